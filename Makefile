@@ -216,7 +216,7 @@ export GRCTL_PHYSICS ?= off
 
 .PHONY: help all lib demo cockpit check compile_commands robots servos servo-models shelves messages lint lint-quick format test check-san check-san-cli check-tsan check-memcheck install uninstall
 .PHONY: clean analyse analyzer tidy fuzz soak dist bench bench-peers bench-count bench-realtime bench-pump plots captures cross check-cross check-drivers
-.PHONY: check-physics check-bodies bodies-soak balance-table check-fleet check-abi sources wrap deb check-deb release check-families check-cockpit check-api cockpit-soak check-ports nightly check-scan check-coverage coverage check-mutants check-sequences check-model check-areas check-map check-asserts install-lib FORCE
+.PHONY: check-physics check-bodies bodies-soak bodies-pictures balance-table check-fleet check-abi sources wrap deb check-deb release check-families check-cockpit check-api cockpit-soak check-ports nightly check-scan check-coverage coverage check-mutants check-sequences check-model check-areas check-map check-asserts install-lib FORCE
 .PHONY: firmware size check-firmware picture site check-site
 
 help: ## this list
@@ -378,6 +378,8 @@ check-bodies: all $(BUILD)/docs/examples/balance$(EXE) ## programs of others dri
 	        $(BUILD)/families/bin/python && \
 	    $(BUILD)/physics/bin/python tests/physics/lean.py "$(call whole,$(GRCTL_RUN))" \
 	        $(BUILD)/docs/examples/balance$(EXE) && \
+	    $(BUILD)/physics/bin/python tests/physics/teleoperation.py "$(call whole,$(GRCTL_RUN))" \
+	        $(BUILD)/families/bin/python && \
 	    $(BUILD)/physics/bin/python tests/physics/cube.py "$(call whole,$(GRCTL_RUN))" && \
 	    $(BUILD)/physics/bin/python tests/physics/cost.py "$(call whole,$(GRCTL_RUN))"; \
 	else echo 'check-bodies: skipped: MuJoCo cannot be had for this python3'; fi
@@ -391,6 +393,16 @@ bodies-soak: all ## GR001 on a body that is pushed and falls, in virtual time: M
 	        "$(call whole,$(GRCTL_RUN))" motions/*.pseq --minutes $(or $(MINUTES),60) \
 	        --seed $(or $(SEED),1); \
 	else echo 'bodies-soak: skipped: MuJoCo cannot be had for this python3'; fi
+
+bodies-pictures: all ## the strips of docs/guide/body.md, in build/pictures; MUJOCO_GL=egl without a display
+	@python3 -m venv $(BUILD)/physics && $(BUILD)/physics/bin/pip install -q \
+	    --disable-pip-version-check mujoco numpy cffi || true
+	@if $(BUILD)/physics/bin/python -c 'import mujoco, numpy, cffi' 2>/dev/null; then \
+	    $(MAKE) --no-print-directory python PYTHON="$(call whole,$(BUILD)/physics/bin/python)" && \
+	    mkdir -p $(BUILD)/pictures && PYTHONPATH="$(abspath $(PYTHON_DIR))" \
+	    $(BUILD)/physics/bin/python tests/physics/pictures.py "$(call whole,$(GRCTL_RUN))" \
+	        $(BUILD)/pictures; \
+	else echo 'bodies-pictures: skipped: MuJoCo cannot be had for this python3'; fi
 
 check-families: all ## clients of other servos (from PyPI) against the simulator
 	@python3 -m venv $(BUILD)/families && $(BUILD)/families/bin/pip install -q --disable-pip-version-check $(FAMILY_CLIENTS)

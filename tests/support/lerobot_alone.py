@@ -22,7 +22,7 @@ class Absent(types.ModuleType):
 
 def import_alone():
     """Before the first import of lerobot; nothing where torch is installed."""
-    if importlib.util.find_spec("torch") is None:
+    if "torch" not in sys.modules and importlib.util.find_spec("torch") is None:
         looks = importlib.util.find_spec("lerobot.lerobot_types") is not None
         for name in ("torch", *(() if looks else OF_LEARNING)):
             sys.modules[name] = Absent(name)

@@ -407,7 +407,7 @@ class Without(unittest.TestCase):
                 "from grobo.physics import main; sys.exit(main(['x.xml']))")
         done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
         self.assertEqual(done.returncode, 1)
-        self.assertIn("MuJoCo is missing: pip install 'grobo[physics]'", done.stderr)
+        self.assertIn("MuJoCo is missing: pip install mujoco numpy", done.stderr)
 
 
 if __name__ == "__main__":

@@ -4,7 +4,7 @@
     python -m grobo.mcap walk.pseq walk.mcap
     python -m grobo.mcap --robot so101 wave.yaml session.pcapng wave.mcap
 
-It needs the package mcap (`pip install 'grobo[mcap]'`). Messages are JSON with a schema:
+It needs the package mcap (`pip install mcap`). Messages are JSON with a schema:
 
 - `/joints`, `grobo.JointAngles`: each posture of a motion at the time when it is reached, from 0 on;
   `angles` are radians by joint, without those that the posture does not set.

@@ -5,7 +5,7 @@
 
 The servos are those of the library: their bytes, registers, position loops, motors and friction.
 What they move is a body of an MJCF or URDF file, whose joints are called as the robot's. MuJoCo
-comes with `pip install grobo[physics]`.
+is the wheel's extra `physics`.
 
 Body is the body, Served a simulator behind a pseudo-terminal or TCP in real time, Virtual one with
 the library's engine in virtual time.
@@ -42,7 +42,7 @@ def _mujoco() -> Any:
     try:
         return importlib.import_module("mujoco")
     except ImportError as missing:
-        raise Missing("MuJoCo is missing: pip install 'grobo[physics]'") from missing
+        raise Missing("MuJoCo is missing: pip install mujoco numpy") from missing
 
 
 class Tilt(NamedTuple):
