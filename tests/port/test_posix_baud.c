@@ -1,7 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-/* Rates with headers of glibc 2.42 and later before an older one: there B9600 is the number 9600, which
- * the older cfsetispeed() refuses. So zig builds the wheel. */
+/*
+ * Rates with headers of glibc 2.42 and later before an older one: there B9600 is the number 9600,
+ * which the older cfsetispeed() refuses. So zig builds the wheel.
+ */
+#include <fcntl.h>
+#include <stdlib.h>
 #include <termios.h>
+#include <unistd.h>
 
 #undef B9600
 #undef B115200
@@ -9,12 +14,8 @@
 #define B9600 9600
 #define B115200 115200
 #define B1000000 1000000
+
 #include "ports/posix/baud.c"
-
-#include <fcntl.h>
-#include <stdlib.h>
-#include <unistd.h>
-
 #include "tests/support/test.h"
 
 TEST(a_rate_is_set_where_headers_and_library_name_it_otherwise)
