@@ -171,7 +171,7 @@ calibrated, offset is 0 as from the factory; 'grctl calibrate' does it$" "$work/
 check "so does status" status_says_why
 setup_says_why() {
     XDG_CONFIG_HOME="$work/new-home" \
-        exits 0 "$GRCTL" -d "$robot" --robot so101 --timeout 500 --yes setup &&
+        exits 0 "$GRCTL" -d "$robot" --robot so101 --timeout 100 --yes setup &&
         grep -q "^  shoulder_pan .*its servo was never calibrated" "$work/err" &&
         grep -q 'has its name, but 6 of its 6 joints cannot move yet' "$work/err" &&
         ! grep '^done' "$work/err"
