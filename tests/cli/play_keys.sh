@@ -36,6 +36,21 @@ check "s stops, and that is no failure" until_screen '^status 0'
 check "how it went is told" until_screen 'frames, .* late'
 check "the terminal is as it was" until_screen ' icanon'
 
+# Ten minutes, of which one is left.
+for i in $(seq 0 60); do
+    echo "$((1000 + i * 9900))  0 0 200 0 -$((i * 5)) -200 0 200 0 200 0 -400 -200 0 0 -200 0 400 200 0"
+done >"$work/longer.m"
+type_line "'$GRCTL' -d '$robot' --retries 10 play --speed 995 '$work/longer.m'; echo status \$?"
+until_screen 'left at 995 %'
+test_case "no key makes a motion faster than the most"
+keys +
+check "plus goes to the most" until_screen 'left at 1000 %'
+keys +
+keys -- -
+check "and not beyond" until_screen 'left at 990 %'
+keys s
+until_screen '^status 0'
+
 type_line "$play"
 until_screen 'playing'
 keys C-c
