@@ -29,6 +29,7 @@ falls_as_said() {
     raised || return 1
     before=$(angle shoulder_lift)
     exits 0 of so101 servo off || return 1
+    ! grep 'drop:.*shoulder_pan' "$work/err" || return 1 # weight does not turn it
     said_deg=$(sed -n 's/.*joints drop:.*shoulder_lift \([0-9]*\) deg.*/\1/p' "$work/err")
     wait_for fallen shoulder_lift "$before" || return 1
     now=$(angle shoulder_lift)

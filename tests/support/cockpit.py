@@ -984,6 +984,9 @@ def delayed():
         # A resume from before a halt, or from before the pause.
         page.target("play", motion="greet.pseq", loop=True)
         playing = page.wait_played("playing")["sequence"]
+        # One that is based on the pause itself goes on.
+        page.post("resume", sequence=page.post("pause")["sequence"])
+        page.wait_played("playing")
         done = page.post("pause")
         page.wait_played("paused")
         no = expect(409, "stale", page.post, "resume", sequence=playing)
