@@ -134,9 +134,9 @@ TEST(each_model_is_asked_so_from_its_firmware_on)
             }
             grobo_robot_link_down(&kit.robot, kit.now_us);
             grobo_robot_link_up(&kit.robot, kit.now_us);
-            run(300 * MS);
+            run(120 * MS);
             bool expected = first > 0 && versions[v] >= first;
-            assert_true(expected ? fast > 20 && plain <= 2 : fast == 0 && plain > 20);
+            assert_true(expected ? fast > 8 && plain <= 2 : fast == 0 && plain > 8);
             if (first > 0 || strncmp(model->name, "MX", 2) == 0 || model->name[0] == '2') {
                 assert_read();
             }
