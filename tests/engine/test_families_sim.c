@@ -315,7 +315,7 @@ static void stop_at(const family *f, int ms, uint32_t supply_pct, double *on_deg
     const grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 50 * MS,
                                        .voltage_mv = -1};
     family_start(&kit, f, &config, NULL);
-    assert_int_equal(family_move(&kit, 85, 2000), GROBO_OK);
+    assert_int_equal(family_move(&kit, 85, 1000), GROBO_OK);
     grobo_sim_set_supply(&kit.sim, kit.servos[0]->voltage_mv * supply_pct / 100);
     grobo_posture p = family_posture(&kit, -60, 10);
     assert_true(grobo_robot_move(&kit.robot, &p) > 0);
@@ -323,7 +323,7 @@ static void stop_at(const family *f, int ms, uint32_t supply_pct, double *on_deg
     (void)grobo_robot_stop(&kit.robot, true); /* the fastest are there */
     double then_deg = family_angle_deg(&kit, 0), last_deg = then_deg;
     *back_deg = 0;
-    for (int i = 0; i < 200; i++) {
+    for (int i = 0; i < 120; i++) {
         family_run(&kit, 5 * MS);
         *back_deg = fmax(*back_deg, family_angle_deg(&kit, 0) - last_deg);
         last_deg = fmin(family_angle_deg(&kit, 0), last_deg);
