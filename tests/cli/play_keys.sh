@@ -38,7 +38,8 @@ check "the terminal is as it was" until_screen ' icanon'
 
 # Ten minutes, of which one is left.
 for i in $(seq 0 60); do
-    echo "$((1000 + i * 9900))  0 0 200 0 -$((i * 5)) -200 0 200 0 200 0 -400 -200 0 0 -200 0 400 200 0"
+    echo "$((1000 + i * 9900))  0 0 200 0 -$((i * 5)) -200 0 200 0 200 0 -400 -200 0 0 -200 0 400" \
+        "200 0"
 done >"$work/longer.m"
 type_line "'$GRCTL' -d '$robot' --retries 10 play --speed 995 '$work/longer.m'; echo status \$?"
 until_screen 'left at 995 %'
