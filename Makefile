@@ -77,6 +77,8 @@ WARNINGS := -Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Wshadow \
 SAN_FLAGS := $(if $(SAN),-fsanitize=$(SAN) -fno-sanitize-recover=all -fno-omit-frame-pointer)
 # All slots, joints and queues are walked through to assert (src/base/assert.h): WALKS=-DGROBO_WALKS.
 WALKS ?=
+# Behind CFLAGS, of the library alone.
+SRC_CFLAGS ?=
 ALL_CPPFLAGS = -Iinclude -Iports/$(PORT)/include $(WALKS) $(CPPFLAGS)
 # Calls within the library are its own, though all functions of the headers are exported.
 OWN_CALLS ?= -fno-semantic-interposition
@@ -311,10 +313,11 @@ test: all $(chosen) $(CROSS_TOOLS) $(left_out) ## the tests alone; ONLY=joints o
 	    TEST_ONLY="$(ONLY)" $(cross_env) tests/run.sh \
 	    $(test_programs) $(test_scripts) $(corpora) $(if $(ONLY),,$(left_out)) $(TEST_END)
 
+# What runs long is the library: it is optimised. Lines are enough for what a sanitizer says.
+SAN_BUILD = BUILD=$(BUILD)/san SAN=address,undefined CFLAGS='-O1 -g1' SRC_CFLAGS=-O2 WALKS=-DGROBO_WALKS
 check-san: ## the tests of our own code under AddressSanitizer and UBSan
 	@TEST_WAITERS=2 LSAN_OPTIONS="suppressions=$(CURDIR)/tests/support/leaks:print_suppressions=0" \
-	    $(MAKE) --no-print-directory test BUILD=$(BUILD)/san SAN=address,undefined CFLAGS='-O1 -g' \
-	    WALKS=-DGROBO_WALKS \
+	    $(MAKE) --no-print-directory test $(SAN_BUILD) \
 	    RING='$(filter-out lint export,$(RING))'
 
 # The command in check-san's build: scripts that together reach its parsers, files, requests, registers
@@ -331,8 +334,7 @@ check-san-cli: ## the command under these sanitizers, by scripts that wait littl
 	@rm -rf "$(SAN_REPORTS)" && mkdir -p "$(SAN_REPORTS)"
 	@ASAN_OPTIONS="$(SAN_OPTIONS)" UBSAN_OPTIONS="$(SAN_OPTIONS)" \
 	    LSAN_OPTIONS="suppressions=$(CURDIR)/tests/support/leaks:print_suppressions=0" \
-	    $(MAKE) --no-print-directory test BUILD=$(BUILD)/san SAN=address,undefined CFLAGS='-O1 -g' \
-	    WALKS=-DGROBO_WALKS RING=cli TEST_SCRIPTS='$(SAN_CLI:%=tests/cli/%.sh)'; status=$$?; \
+	    $(MAKE) --no-print-directory test $(SAN_BUILD) RING=cli TEST_SCRIPTS='$(SAN_CLI:%=tests/cli/%.sh)'; status=$$?; \
 	    for report in "$(SAN_REPORTS)"/*; do \
 	        [ ! -e "$$report" ] || { cat "$$report"; status=1; }; \
 	    done; exit $$status
@@ -438,7 +440,7 @@ cockpit-soak: all ## grctl serve with good and bad clients for MINUTES=60: its m
 
 # But for those that judge when frames leave, by the clock of a machine that is not slowed down.
 check-tsan: ## the tests of what threads share under ThreadSanitizer
-	@TEST_JOBS=2 $(MAKE) --no-print-directory test BUILD=$(BUILD)/tsan SAN=thread CFLAGS='-O1 -g' \
+	@TEST_JOBS=2 $(MAKE) --no-print-directory test BUILD=$(BUILD)/tsan SAN=thread CFLAGS='-O1 -g1' \
 	    WITHOUT='tests/link/test_classic_frames.c tests/link/test_play_line.c' \
 	    RING='link port'
 
@@ -640,7 +642,7 @@ FILES ?=
 check-coverage: ## that the tests reach 97 % of the lines of src, 85 % of ports, 93 % of tools
 	@mkdir -p $(BUILD)/cov
 	@find $(BUILD)/cov -name '*.gcda' -delete
-	@TEST_WAITERS=2 $(MAKE) --no-print-directory test BUILD=$(BUILD)/cov COVERAGE=yes CFLAGS='-O1 -g' \
+	@TEST_WAITERS=2 $(MAKE) --no-print-directory test BUILD=$(BUILD)/cov COVERAGE=yes CFLAGS='-O1 -g1' \
 	    WITHOUT='tests/cli/memcheck.sh tests/engine/test_family_soak.c tests/engine/test_robot_soak.c' \
 	    RING='$(filter-out lint export,$(RING))' >$(BUILD)/cov/log || \
 	    grep -q '^[0-9]* passed, ' $(BUILD)/cov/log
@@ -806,7 +808,7 @@ keep = @mkdir -p $(@D); printf '%s\n' $(1) >$@.new; \
 
 # Objects depend on the compiler and the flags they were built with; `make install` reads them.
 $(BUILD)/.flags: FORCE
-	$(call keep,$(call quote,$(ALL_CPPFLAGS) $(ALL_CFLAGS) $(ALL_LDFLAGS)) \
+	$(call keep,$(call quote,$(ALL_CPPFLAGS) $(ALL_CFLAGS) $(SRC_CFLAGS) $(ALL_LDFLAGS)) \
 	    $(foreach v,$(REMEMBERED),$(call quote,$(v) = $($(v)))))
 
 # $(call compile,FOLDER,VARIABLE...): how the files of a folder are compiled.
@@ -814,7 +816,8 @@ define compile
 $(BUILD)/$(1)/%.o: $(1)/%.c $(BUILD)/.flags
 	$$(say) CC $$<
 	@mkdir -p $$(@D)
-	$$(Q)$$(CC) $$(ALL_CPPFLAGS) $(foreach v,$(2),$$($(v))) $$(ALL_CFLAGS) -MMD -MP -c -o $$@ $$<
+	$$(Q)$$(CC) $$(ALL_CPPFLAGS) $(foreach v,$(2),$$($(v))) $$(ALL_CFLAGS) \
+	    $(if $(filter src src/%,$(1)),$$(SRC_CFLAGS)) -MMD -MP -c -o $$@ $$<
 endef
 
 # Where an interface has two sides (Windows), the library is one and who links it whole the other.
