@@ -316,7 +316,7 @@ test: all $(chosen) $(CROSS_TOOLS) $(left_out) ## the tests alone; ONLY=joints o
 # What runs long is the library: it is optimised. Lines are enough for what a sanitizer says.
 SAN_BUILD = BUILD=$(BUILD)/san SAN=address,undefined CFLAGS='-O1 -g1' SRC_CFLAGS=-O2 WALKS=-DGROBO_WALKS
 check-san: ## the tests of our own code under AddressSanitizer and UBSan
-	@TEST_WAITERS=2 LSAN_OPTIONS="suppressions=$(CURDIR)/tests/support/leaks:print_suppressions=0" \
+	@TEST_WAITERS=2 GROBO_BLOCKED_MINUTES=1 LSAN_OPTIONS="suppressions=$(CURDIR)/tests/support/leaks:print_suppressions=0" \
 	    $(MAKE) --no-print-directory test $(SAN_BUILD) \
 	    RING='$(filter-out lint export,$(RING))'
 
