@@ -56,6 +56,20 @@ P
     [ "$(env -u PYTHONPATH "$work/venv/bin/python" "$work/five.py")" = "$version 20 False" ]
 }
 
+# It opens a serial line and sets its rate: nobody answers there.
+opens() {
+    cat >"$work/opens.py" <<'P'
+import os
+import grobo
+own, other = os.openpty()
+try:
+    grobo.connect(os.ttyname(other), robot="pan-tilt", guard=False)
+except grobo.errors.Error as refused:
+    print("no reply in time" in str(refused) or refused)
+P
+    [ "$(env -u PYTHONPATH "$work/venv/bin/python" "$work/opens.py")" = True ]
+}
+
 # LeRobot finds it by the name of its distribution, and imports that.
 plugin() {
     cp -R tools/python/lerobot_robot_grobo "$work/plugin" &&
@@ -80,6 +94,7 @@ for processor in ${PROCESSORS:-x86_64 aarch64}; do
         check "$processor: the same again" same_again "$processor"
         check "$processor: installed" installs "$processor"
         check "$processor: plays a motion" plays
+        check "$processor: opens a serial line" opens
         check "$processor: the plugin for LeRobot is found" plugin
     else
         check "$processor: of that machine" machine "$processor" \
