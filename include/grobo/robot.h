@@ -250,8 +250,8 @@ GROBO_API int grobo_robot_fault(const grobo_robot *robot, double *value_deg);
  * Says why a request, its job or a motion failed, for people: grobo_error_text(), and behind it for
  * LIMIT the joint, what was asked for and what it can, in the unit in which people give that joint
  * (core/unit.h; deg/s of a wheel): "outside the joint's limits: motor 12 (elbow), 95.0 deg is not
- * within -90.0 to 90.0 deg"; for NAN and SPEED the joint; for LATCHED what was measured, and
- * where.
+ * within -90.0 to 90.0 deg"; for NAN and SPEED the joint, for STALE one that was not read, for
+ * STATE one that another program moves; for LATCHED what was measured, and where.
  * @param result of a request, of grobo_runner_wait_job() or the like, asked about before the next
  *   request: joint and value are those of grobo_robot_fault().
  * @param[out] text cut where it does not fit.

@@ -9,6 +9,7 @@
 #include "src/robot/query.h"
 #include "src/robot/robot.h"
 #include "src/robot/speed.h"
+#include "src/robot/state.h"
 
 /* A text being put together: what does not fit is left out. */
 typedef struct writing {
@@ -145,10 +146,17 @@ static void put_trip(writing *w, const grobo_robot *robot)
     }
 }
 
-/* What is always said of a joint: fault_joint is that one, or none. */
-static bool names_joint(int result)
+/* Whether it is said of fault_joint. Where no joint is meant that may be of an error before: then
+ * the state of the joint tells. */
+static bool names_joint(const grobo_robot *robot, int result)
 {
-    return result == GROBO_ERR_LIMIT || result == GROBO_ERR_NAN || result == GROBO_ERR_SPEED;
+    if (robot->fault_joint < 0) {
+        return false;
+    }
+    const grobo_robot_axis *axis = &robot->axes[robot->fault_joint];
+    return result == GROBO_ERR_LIMIT || result == GROBO_ERR_NAN || result == GROBO_ERR_SPEED ||
+           (result == GROBO_ERR_STALE && !grobo_i_is_sensed(axis)) ||
+           (result == GROBO_ERR_STATE && grobo_i_is_external(axis));
 }
 
 int grobo_robot_error_text(const grobo_robot *robot, int result, char *text, size_t room)
@@ -160,7 +168,7 @@ int grobo_robot_error_text(const grobo_robot *robot, int result, char *text, siz
 
     put(&w, grobo_error_text(result));
     grobo_i_lock(robot);
-    bool of_joint = names_joint(result) && robot->fault_joint >= 0;
+    bool of_joint = names_joint(robot, result);
     if (of_joint) {
         put(&w, ": ");
         put_joint(&w, grobo_i_joint(robot->driver->model, robot->fault_joint));

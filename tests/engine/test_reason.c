@@ -9,6 +9,7 @@
 #include <grobo/core/unit.h>
 #include <grobo/core/wheel.h>
 
+#include "src/robot/state.h"
 #include "tests/support/family_kit.h"
 #include "tests/support/test.h"
 
@@ -166,7 +167,7 @@ TEST(a_number_that_is_none_names_its_joint_alone)
     says(grobo_robot_move(&kit.robot, &target), "not a finite number: motor 2 (slide)");
 }
 
-/* A joint whose servo takes no time that is as long. */
+/* A joint that was not read, and one whose servo takes no time that is as long. */
 TEST(a_joint_that_cannot_be_sent_to_is_named)
 {
     int slow = 0;
@@ -175,15 +176,30 @@ TEST(a_joint_that_cannot_be_sent_to_is_named)
         grobo_posture to = posture_of(1, 60);
 
         family_start_as(&kit, f, &defaults, &sim, turns_none);
+        says(grobo_robot_send(&kit.robot, &to), "no fresh value: motor 2 (slide)");
         kit.joints[1].max_speed_rad_s = RAD(0.01);
         assert_int_equal(family_wait(&kit, grobo_robot_torque(&kit.robot, HELD, GROBO_TORQUE_ON)),
                          0);
+        says(GROBO_ERR_STALE, grobo_error_text(GROBO_ERR_STALE)); /* it was read meanwhile */
         if (grobo_robot_send(&kit.robot, &to) == GROBO_ERR_SPEED) {
             says(GROBO_ERR_SPEED, "faster than the servo can move: motor 2 (slide)");
             slow++;
         }
     }
     assert_true(slow > 0);
+}
+
+/* Another program has sent it where it is not expected. */
+TEST(a_joint_that_is_moved_by_another_program_is_named)
+{
+    char wanted[100];
+    start(family_named("sts"));
+    const grobo_joint *joint = grobo_model_joint(kit.robot.driver->model, 0);
+    (void)snprintf(wanted, sizeof wanted, "%s: motor %d (%s)", grobo_error_text(GROBO_ERR_STATE),
+                   joint->motor, joint->name);
+    kit.robot.axes[0].phase = GROBO_I_JOINT_EXTERNAL;
+    kit.robot.fault_joint = 0; /* as test_gate.c has it */
+    says(GROBO_ERR_STATE, wanted);
 }
 
 TEST(an_error_of_no_joint_is_its_text_alone)
@@ -193,6 +209,7 @@ TEST(an_error_of_no_joint_is_its_text_alone)
     start(family_named("sts"));
     assert_int_equal(grobo_robot_move(&kit.robot, &beyond), GROBO_ERR_LIMIT);
     says(GROBO_ERR_STATE, grobo_error_text(GROBO_ERR_STATE));
+    says(GROBO_ERR_STALE, grobo_error_text(GROBO_ERR_STALE));
     says(GROBO_OK, grobo_error_text(GROBO_OK));
     says(GROBO_ERR_LATCHED, grobo_error_text(GROBO_ERR_LATCHED)); /* it is not */
     grobo_posture wrong = posture_of(0, 0);
