@@ -61,7 +61,9 @@ int grobo_mutex_init(grobo_mutex *mutex)
     int r = pthread_mutexattr_init(&how);
 
     if (r == 0) {
-#if defined(_POSIX_THREAD_PRIO_INHERIT) && _POSIX_THREAD_PRIO_INHERIT > 0
+/* musl has it and does not say so in unistd.h; glibc has no macro of this name. */
+#if defined(PTHREAD_PRIO_INHERIT) ||                                                               \
+    (defined(_POSIX_THREAD_PRIO_INHERIT) && _POSIX_THREAD_PRIO_INHERIT > 0)
         (void)pthread_mutexattr_setprotocol(&how, PTHREAD_PRIO_INHERIT);
 #endif
         r = pthread_mutex_init(mutex, &how);
