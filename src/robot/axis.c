@@ -33,13 +33,31 @@ double grobo_i_trajectory_at(const grobo_robot_trajectory *trajectory, int64_t n
     return trajectory->from_rad + (trajectory->to_rad - trajectory->from_rad) * part;
 }
 
+/* The set point of a joint that was sent nowhere: beside the angle by the error that carries it. A
+ * servo that reports the time of its trajectory, and that this is over, has it at its goal. */
+static double set_point(const grobo_robot_axis *axis)
+{
+    const grobo_joint_state *state = &axis->state;
+    double angle_rad = state->angle_rad + grobo_i_load(axis);
+    bool over = (state->valid & GROBO_FIELD_TIME) != 0 && state->time_us >= state->goal_time_us;
+    if (!over || state->goal_rad == state->angle_rad || !grobo_i_axis_is_on(axis)) {
+        return angle_rad;
+    }
+    double most_rad = grobo_i_is_stray(axis) ? GROBO_I_HANGS_RAD : GROBO_I_OFF_TRAJECTORY_RAD;
+    bool known = axis->goal_us == axis->angle_us || /* or nobody else has sent it elsewhere since */
+                 (grobo_i_has_target(axis) &&       /* and it stands there yet, or again */
+                  (grobo_i_is_stray(axis) ? state->speed_dps == 0 : grobo_i_goal_is_told(axis)));
+    return known && grobo_i_near_rad(state->goal_rad, state->angle_rad, most_rad) ? state->goal_rad
+                                                                                  : angle_rad;
+}
+
 double grobo_i_axis_commanded(const grobo_robot_axis *axis, int64_t now_us)
 {
     if (grobo_i_is_stray(axis)) {
         const grobo_robot_trajectory own = {axis->state.angle_rad, axis->state.goal_rad,
                                             axis->angle_us, axis->own_until_us};
         return axis->own_until_us > axis->angle_us ? grobo_i_trajectory_at(&own, now_us)
-                                                   : axis->state.angle_rad + grobo_i_load(axis);
+                                                   : set_point(axis);
     }
     int64_t at_us =
         grobo_i_is_in_segments(axis) ? grobo_i_sooner(now_us, axis->told_to_us) : now_us;
@@ -283,6 +301,9 @@ static bool is_beside(const grobo_robot_axis *axis)
     return axis->seen_us >= axis->told_us && fmin(asked_rad, came_rad) > GROBO_I_OFF_TRAJECTORY_RAD;
 }
 
+/* So soon behind its frame a joint with a weight turns slower than it will. */
+#define BEGINS_US 100000
+
 /* Of a servo that tells the time of its trajectory: there, but for one beside it, which goes on
  * to its goal at the speed that it told, and one that cannot have come there since it was read. One
  * beside it may have missed the frame and come to the end of the trajectory before: none is taken
@@ -297,7 +318,12 @@ static double by_time(const grobo_robot *robot, int joint, int64_t now_us)
     }
     bool beside = is_beside(axis);
     if (beside) {
-        rad_s = fmin(grobo_rad_from_deg(abs(axis->state.speed_dps)), rad_s);
+        const grobo_robot_trajectory rest = {axis->seen_rad, axis->trajectory.to_rad, axis->seen_us,
+                                             axis->trajectory.to_us};
+        bool begins = axis->seen_us - axis->told_us < BEGINS_US && axis->state.speed_dps != 0;
+        rad_s =
+            fmin(begins ? trajectory_speed(&rest) : grobo_rad_from_deg(abs(axis->state.speed_dps)),
+                 rad_s);
         now_us = robot->now_us;
     }
     double left_rad = (beside ? axis->trajectory.to_rad : way_rad) - axis->seen_rad;
@@ -406,7 +432,7 @@ double grobo_i_axis_target(const grobo_robot_axis *axis)
 
 void grobo_i_axis_rest(grobo_robot_axis *axis, int64_t now_us)
 {
-    double goal_rad = axis->state.angle_rad + grobo_i_load(axis);
+    double goal_rad = set_point(axis);
     axis->trajectory = (grobo_robot_trajectory){goal_rad, goal_rad, now_us, now_us};
     grobo_i_joint_to(axis, GROBO_I_JOINT_REST);
 }
@@ -497,6 +523,10 @@ bool grobo_i_goal_is_told(const grobo_robot_axis *axis)
 #define SWINGS_DPS 40
 #define SWINGS_RAD (3 * 0.017453292519943295)
 #define SAGS_US 1500000
+/* A mean speed hides that another program moves it: so long at most it is taken to sag, and where
+ * it was sent nowhere, which changes what carries it by little. */
+#define SAGS_MEAN_US 1000000
+#define SAGS_THERE_US 320000
 
 double grobo_i_load_most(const grobo_robot *robot, int joint)
 {
@@ -504,13 +534,16 @@ double grobo_i_load_most(const grobo_robot *robot, int joint)
     return pct > 0 ? LOAD_MOST_RAD * pct / 100 : LOAD_MOST_RAD;
 }
 
-/* True of one that is not, and tells how it turns. */
+/* True of one that is not counted along its trajectory, and was read to turn, or not to. A mean
+ * speed shows that of a joint alone that was sent here: others may move it elsewhere between two
+ * angles. */
 static bool shows_swing(const grobo_robot *robot, int joint)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
+    bool mean = GROBO_I_EXTRA(grobo_i_driver_of(robot, joint), tells_no_speed);
+    bool sent = grobo_i_has_target(axis) && !grobo_i_is_stray(axis);
     return !grobo_i_axis_is_counted(axis) && !grobo_i_is_wheel(robot, joint) &&
-           !GROBO_I_EXTRA(grobo_i_driver_of(robot, joint), tells_no_speed) &&
-           axis->seen_dps != GROBO_I_NO_SPEED;
+           axis->seen_dps != GROBO_I_NO_SPEED && (sent || !mean);
 }
 
 bool grobo_i_axis_goal(const grobo_robot *robot, int joint, double *goal_rad)
@@ -523,9 +556,15 @@ bool grobo_i_axis_goal(const grobo_robot *robot, int joint, double *goal_rad)
 }
 
 /* True of one that may not rest yet in the goal that it was told, or since then. */
-static bool settles(const grobo_robot *robot, const grobo_robot_axis *axis, int64_t since_us)
+static bool settles(const grobo_robot *robot, int joint, int64_t since_us)
 {
+    const grobo_robot_axis *axis = &robot->axes[joint];
     int64_t from_us = grobo_i_later(axis->told_us, since_us);
+    if (GROBO_I_EXTRA(grobo_i_driver_of(robot, joint), tells_no_speed)) {
+        double way_rad = fabs(axis->trajectory.to_rad - axis->trajectory.from_rad);
+        bool there = way_rad <= grobo_i_same_goal_rad(robot, joint);
+        return robot->now_us - from_us <= (there ? SAGS_THERE_US : SAGS_MEAN_US);
+    }
     from_us = grobo_i_has_target(axis) ? grobo_i_later(from_us, axis->trajectory.to_us) : from_us;
     return robot->now_us - from_us <= SAGS_US;
 }
@@ -538,10 +577,12 @@ bool grobo_i_swings(const grobo_robot *robot, int joint)
         return false;
     }
     double left_rad = goal_rad - load_rad - axis->seen_rad;
-    bool now = axis->goal_us == axis->angle_us || settles(robot, axis, 0);
+    bool mean = GROBO_I_EXTRA(grobo_i_driver_of(robot, joint), tells_no_speed);
+    bool now = (axis->goal_us == axis->angle_us && !mean) || settles(robot, joint, 0);
     bool sinks = now && axis->seen_dps * (goal_rad - axis->seen_rad) < 0;
     return (sinks && fabs(left_rad) <= grobo_i_load_most(robot, joint)) ||
-           (load_rad != 0 && fabs(left_rad) <= SWINGS_RAD && abs(axis->seen_dps) <= SWINGS_DPS);
+           (load_rad != 0 && !mean && fabs(left_rad) <= SWINGS_RAD &&
+            abs(axis->seen_dps) <= SWINGS_DPS);
 }
 
 bool grobo_i_may_sag(const grobo_robot *robot, int joint, int64_t since_us)
@@ -551,7 +592,7 @@ bool grobo_i_may_sag(const grobo_robot *robot, int joint, int64_t since_us)
     return shows_swing(robot, joint) && grobo_i_axis_goal(robot, joint, &goal_rad) &&
            grobo_i_goal_is_told(axis) &&
            fabs(goal_rad - axis->seen_rad) <= grobo_i_load_most(robot, joint) &&
-           settles(robot, axis, since_us);
+           settles(robot, joint, since_us);
 }
 
 /* ---- moving ---------------------------------------------------------------------------------- */

@@ -63,6 +63,8 @@ double grobo_i_axis_target(const grobo_robot_axis *axis);
 /* An angle this far from the trajectory that a joint was sent on is not of a joint on that
  * trajectory: more than what the fastest one does while a frame is on its trajectory. */
 #define GROBO_I_OFF_TRAJECTORY_RAD (12 * 0.017453292519943295)
+/* A servo that tells the time of its trajectory, and no speed, may hang so near its goal. */
+#define GROBO_I_HANGS_RAD (5 * 0.017453292519943295)
 /* So long after it was told a joint turns that can, and no frame is under way. */
 #define GROBO_I_BEGUN_US 100000
 /* grobo_robot_axis.seen_dps of a reading without a speed. */

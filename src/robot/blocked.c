@@ -20,6 +20,7 @@
  * it stands; they come often meanwhile (often.c).
  */
 #include <math.h>
+#include <stdlib.h>
 
 #include "src/base/instant.h"
 #include "src/robot/axis.h"
@@ -64,7 +65,8 @@
 /* A joint that goes on by less stands; so long at least. */
 #define STANDS_RAD (0.6 * DEG)
 #define STANDS_US 100000
-/* A loop that carries an arm is so late behind a way that begins, where others pull back. */
+/* A loop that carries an arm is so late behind a way that begins, where others pull back, or where
+ * its gears stick: an XL-320 at 100 degrees a second is 12 degrees behind before it has turned. */
 #define STARTS_US 150000
 /* What was seen longer ago than that is no beginning of anything: the host may have stalled, and
  * servos that watch it have stopped by themselves. */
@@ -189,6 +191,13 @@ static double least_ahead_rad(const grobo_robot *robot, int joint)
     return fmin(most_rad, OVERLOADED_RAD);
 }
 
+/* True of one that was read to turn to its set point: it has just begun. */
+static bool comes(const grobo_robot_axis *axis, double away_rad)
+{
+    return axis->seen_dps != GROBO_I_NO_SPEED && abs(axis->seen_dps) >= GROBO_I_SLOW_DPS &&
+           axis->seen_dps * away_rad > 0;
+}
+
 /* Whether it stands while its set point moves on: from `axis->block_us` on, when that was where it
  * began last. */
 static bool is_blocked(grobo_robot *robot, int joint, double set_rad)
@@ -211,10 +220,10 @@ static bool is_blocked(grobo_robot *robot, int joint, double set_rad)
         return false;
     }
     bool at_once = way->to_us - way->from_us < stands_us(robot, joint); /* one of many frames */
-    int64_t since_us =
-        at_once ? axis->block_us : grobo_i_later(axis->block_us, way->from_us + STARTS_US);
+    int64_t begun_us = at_once ? axis->block_us : way->from_us;
+    int64_t since_us = grobo_i_later(axis->block_us, begun_us + STARTS_US);
     return fabs(away_rad) >= AWAY_RAD && ahead_rad >= least_ahead_rad(robot, joint) &&
-           robot->now_us - since_us >= stands_us(robot, joint);
+           robot->now_us - since_us >= stands_us(robot, joint) && !comes(axis, away_rad);
 }
 
 /* Whether it is further away than weight has it, and does not come nearer. */

@@ -84,6 +84,9 @@ static double rest_of(const grobo_robot *robot, int joint, bool soft)
     }
     double here_rad = grobo_i_axis_place(robot, joint);
     double to_rad = axis->trajectory.to_rad - grobo_i_load(axis); /* where it turns to */
+    if (!GROBO_DRIVERS_PLAIN && grobo_i_hangs_in_goal(robot, joint)) {
+        return axis->trajectory.to_rad; /* it has not begun to go on from there */
+    }
     double rad_s = fmin(grobo_i_axis_speed(robot, joint), grobo_i_speed_limit(robot, joint, soft));
     double most_rad = rad_s * (double)axis->next_time_us / 1e6 / 2;
     if (!GROBO_DRIVERS_PLAIN) { /* a servo with ramps comes to rest no sooner */
@@ -92,7 +95,12 @@ static double rest_of(const grobo_robot *robot, int joint, bool soft)
         to_rad = rest_rad == here_rad ? to_rad : rest_rad;
     }
     int side = (to_rad > here_rad) - (to_rad < here_rad);
-    return grobo_i_goal_near(axis, axis->next_rad, here_rad, most_rad, side);
+    double goal_rad = grobo_i_goal_near(axis, axis->next_rad, here_rad, most_rad, side);
+    if (!GROBO_DRIVERS_PLAIN) {
+        double lag_rad = grobo_i_lag_kept(robot, joint, here_rad);
+        goal_rad = fabs(goal_rad - here_rad) < fabs(lag_rad) ? here_rad + lag_rad : goal_rad;
+    }
+    return goal_rad;
 }
 
 /* Fills in the goals of an order, except for joints that a goal would energise. @return true if

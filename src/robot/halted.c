@@ -24,9 +24,9 @@
 /* Where nobody knows to: it moves until its halt has left, and the halt is refused no sooner. */
 #define ASTRAY_US 100000
 /* Of servos that tell no goal: one that is so far beside its halt so long after it was to be there
- * has lost it. */
+ * has lost it. A weight has none so far from its goal. */
 #define LATE_US 40000
-#define BESIDE_RAD (3 * 0.017453292519943295)
+#define BESIDE_RAD (6 * 0.017453292519943295)
 
 /* Not in its first step, which waits for what moves to stand: a lost halt is found before that. */
 static bool is_read_by_a_job(const grobo_robot *robot)
@@ -101,8 +101,8 @@ static void look_wheel(grobo_robot *robot, int joint)
 static bool is_on_its_halt(const grobo_robot *robot, int joint)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
-    bool rests = GROBO_DRIVERS_PLAIN || grobo_i_axis_is_counted(axis) ||
-                 (axis->stood_us >= axis->trajectory.to_us && grobo_i_rests(robot, joint));
+    bool rests = GROBO_DRIVERS_PLAIN || (axis->stood_us >= axis->trajectory.to_us &&
+                                         grobo_i_rests(robot, joint) && grobo_i_is_calm(axis));
     return rests && grobo_i_goal_is_told(axis) && grobo_i_goal_is_taken(robot, joint) &&
            !is_beside(robot, joint);
 }

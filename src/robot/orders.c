@@ -365,6 +365,9 @@ void grobo_i_gate_halt(grobo_robot *robot, grobo_joint_mask joints)
     grobo_i_halt_owe(robot, joints & unread & ~grobo_i_wheels(robot));
     joints &= ~robot->halts_owed;
     if (joints != 0) {
+        if (!GROBO_DRIVERS_PLAIN) {
+            grobo_i_halt_left(robot, joints & grobo_i_swinging(robot) & ~robot->halted, true);
+        }
         send_halt(robot, joints, false);
     }
 }

@@ -35,6 +35,7 @@
  *   segments.c   long moves told in parts, in time
  *   sense.c      when the background reads which joint, free mode
  *   check.c      the script that asks whether the robot is there
+ *   astray.c     joints that go on though they were told to stand
  *   steps.c      the steps that other scripts are made of
  *   turn.c       the end of a call and of a frame
  *   join.c       requests joint by joint, joined to what was asked for just before

@@ -103,7 +103,8 @@ double grobo_i_speed_limit(const grobo_robot *robot, int joint, bool soft)
  * before is by now. */
 double grobo_i_begin_of(const grobo_robot *robot, const grobo_robot_order *order, int joint)
 {
-    return order->kind == GROBO_I_ORDER_HALT || order->rests
+    bool halts = order->kind == GROBO_I_ORDER_HALT || order->rests;
+    return halts && !grobo_i_hangs_in_goal(robot, joint)
                ? grobo_i_axis_place(robot, joint) + grobo_i_load_kept(&robot->axes[joint])
                : grobo_i_axis_commanded(&robot->axes[joint], robot->now_us);
 }

@@ -119,6 +119,27 @@ bool grobo_i_rests(const grobo_robot *robot, int joint)
                                                     : again && (slow || !told);
 }
 
+/* No joint that swings is so long at one place. */
+#define CALM_US 120000
+
+bool grobo_i_is_calm(const grobo_robot_axis *axis)
+{
+    return axis->still_us != GROBO_NEVER_US && axis->stood_us - axis->still_us >= CALM_US;
+}
+
+grobo_joint_mask grobo_i_swinging(const grobo_robot *robot)
+{
+    grobo_joint_mask swing = 0;
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        const grobo_robot_axis *axis = &robot->axes[j];
+        bool carries = grobo_i_has_target(axis) && grobo_i_load(axis) != 0;
+        bool calm = grobo_i_stands(robot, j) || (axis->stood_us >= axis->trajectory.to_us &&
+                                                 grobo_i_rests(robot, j) && grobo_i_is_calm(axis));
+        swing |= carries && !calm && grobo_i_may_sag(robot, j, 0) ? GROBO_JOINT_BIT(j) : 0;
+    }
+    return swing;
+}
+
 void grobo_i_halt_left(grobo_robot *robot, grobo_joint_mask joints, bool halts)
 {
     grobo_joint_mask before = robot->halted;

@@ -28,4 +28,11 @@ void grobo_i_halt_left(grobo_robot *robot, grobo_joint_mask joints, bool halts);
 /* These are halted once they were read. */
 void grobo_i_halt_owe(grobo_robot *robot, grobo_joint_mask joints);
 
+/* A joint that carries a weight swings about the place where it hangs, and its load need not be
+ * known: two positions show that it does not. */
+bool grobo_i_is_calm(const grobo_robot_axis *axis);
+/* Joints that have arrived and swing about the place where they hang: a stop sends them nowhere,
+ * and is over when they were read to rest. */
+grobo_joint_mask grobo_i_swinging(const grobo_robot *robot);
+
 #endif

@@ -10,6 +10,7 @@
 #include <grobo/core/robot.h>
 
 #include "src/base/instant.h"
+#include "src/robot/astray.h"
 #include "src/robot/axis.h"
 #include "src/robot/couple.h"
 #include "src/robot/gate.h"
@@ -20,8 +21,12 @@
 #include "src/robot/orders.h"
 #include "src/robot/play.h"
 #include "src/robot/query.h"
+#include "src/robot/reading.h"
+#include "src/robot/robot.h"
+#include "src/robot/slot.h"
 #include "src/robot/speed.h"
 #include "src/robot/stand.h"
+#include "src/robot/state.h"
 #include "src/robot/steps.h"
 #include "src/robot/weight.h"
 #include "src/robot/wheel.h"
@@ -709,86 +714,6 @@ static int step_quiet(grobo_robot *robot)
     return GROBO_I_WAIT;
 }
 
-/* Nearer than this to its goal, a servo is there. */
-#define THERE_RAD (0.2 * 0.017453292519943295)
-
-/* A servo that turns yet so near the end of its trajectory comes to rest there; nearer and
- * slower, it stands and trembles. */
-#define ARRIVES_RAD (3 * 0.017453292519943295)
-#define TREMBLES_RAD (1 * 0.017453292519943295)
-#define TREMBLES_DPS 60
-#define ARRIVES_US 20000
-
-/* Of one that tells no more than its speed. */
-static bool still_turns(const grobo_robot *robot, int joint)
-{
-    const grobo_robot_axis *axis = &robot->axes[joint];
-    bool trembles = grobo_i_has_target(axis) && !grobo_i_is_stray(axis) &&
-                    abs(axis->seen_dps) < TREMBLES_DPS &&
-                    grobo_i_near_rad(axis->trajectory.to_rad - grobo_i_load(axis), axis->seen_rad,
-                                     TREMBLES_RAD);
-    return grobo_i_axis_tells_turn(robot, joint) && !trembles &&
-           axis->state.torque == GROBO_TORQUE_ON && abs(axis->seen_dps) >= GROBO_I_SLOW_DPS;
-}
-
-/* It is let go on, and looked at once more. One that swings in its load has arrived. */
-static bool arrives(grobo_robot *robot, int joint)
-{
-    grobo_robot_axis *axis = &robot->axes[joint];
-    bool swings = grobo_i_load(axis) != 0 && grobo_i_swings(robot, joint);
-    bool arrives =
-        grobo_i_has_target(axis) && !grobo_i_is_stray(axis) && still_turns(robot, joint) &&
-        !swings &&
-        grobo_i_near_rad(axis->trajectory.to_rad - grobo_i_load(axis), axis->seen_rad, ARRIVES_RAD);
-    if (arrives) {
-        axis->trajectory.to_us = grobo_i_later(axis->trajectory.to_us, robot->now_us + ARRIVES_US);
-    }
-    return arrives;
-}
-
-/* A joint so far from the goal that its servo just told of, and turning there, however slowly, is
- * on its trajectory: one that sags under its load turns the other way, or not at all. */
-#define CREEPS_FAR_RAD (3 * 0.017453292519943295)
-#define CREEPS_DPS 2
-/* One that swings so has turned back by then. */
-#define TURNS_BACK_US 500000
-
-static bool creeps_to_its_goal(const grobo_robot *robot, int joint)
-{
-    if (GROBO_DRIVERS_PLAIN || grobo_i_is_wheel(robot, joint)) {
-        return false; /* plain ones do not tell that they turn (grobo_i_axis_tells_turn()) */
-    }
-    const grobo_robot_axis *axis = &robot->axes[joint];
-    double left_rad = axis->state.goal_rad - grobo_i_load(axis) - axis->seen_rad;
-    int64_t begun_us = robot->job->begun_us;
-    bool may_turn_back =
-        robot->now_us - begun_us <= TURNS_BACK_US && grobo_i_may_sag(robot, joint, begun_us);
-    return grobo_i_axis_tells_turn(robot, joint) && axis->goal_us == axis->angle_us &&
-           abs(axis->seen_dps) >= CREEPS_DPS && axis->seen_dps * left_rad > 0 &&
-           fabs(left_rad) > CREEPS_FAR_RAD && !may_turn_back;
-}
-
-/* True if the servo, just read, says that it is on a trajectory; notes that trajectory. */
-static bool is_astray(grobo_robot *robot, int joint)
-{
-    grobo_robot_axis *axis = &robot->axes[joint];
-    const grobo_joint_state *state = &axis->state;
-    int64_t left_us = state->goal_time_us - state->time_us;
-    bool creeps = (state->valid & GROBO_FIELD_TIME) != 0 && axis->goal_us == axis->angle_us &&
-                  left_us > 0 && !grobo_i_near_rad(state->goal_rad, state->angle_rad, THERE_RAD);
-    bool turns = (still_turns(robot, joint) && !grobo_i_swings(robot, joint)) ||
-                 creeps_to_its_goal(robot, joint);
-    if (state->torque != GROBO_TORQUE_ON ||
-        (axis->own_until_us <= robot->now_us && !grobo_i_is_external(axis) && !creeps && !turns)) {
-        return false;
-    }
-    if (creeps) {
-        axis->own_until_us = grobo_i_later(axis->own_until_us, axis->goal_us + left_us);
-    }
-    grobo_i_astray(robot, joint);
-    return true;
-}
-
 /* Joints with torque that were not read to stand. */
 static grobo_joint_mask doubtful(const grobo_robot *robot)
 {
@@ -824,9 +749,9 @@ static int step_strays(grobo_robot *robot)
     grobo_joint_mask astray = 0, arriving = 0;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         bool asked = grobo_i_has(job->joints & ~job->failed, j);
-        if (asked && arrives(robot, j)) {
+        if (asked && grobo_i_arrives(robot, j)) {
             arriving |= GROBO_JOINT_BIT(j);
-        } else if (asked && is_astray(robot, j)) {
+        } else if (asked && grobo_i_goes_on(robot, j)) {
             astray |= GROBO_JOINT_BIT(j);
         }
     }
@@ -860,9 +785,10 @@ static int step_moved(grobo_robot *robot)
     grobo_joint_mask doubt = job->pending & doubtful(robot), lost = job->pending & job->failed;
     grobo_joint_mask moved = 0;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
-        bool sags = grobo_i_swings(robot, j) || grobo_i_may_sag(robot, j, job->begun_us);
+        bool sags = !GROBO_DRIVERS_PLAIN &&
+                    (grobo_i_swings(robot, j) || grobo_i_may_sag(robot, j, job->begun_us));
         if (grobo_i_has(doubt, j) && grobo_i_stand_left(&robot->axes[j]) &&
-            (!sags || creeps_to_its_goal(robot, j))) {
+            (!sags || grobo_i_creeps_to_its_goal(robot, j))) {
             grobo_i_astray(robot, j);
             moved |= GROBO_JOINT_BIT(j);
         }

@@ -16,7 +16,7 @@ static rig_clip clip;
 /* ---- steps ----------------------------------------------------------------------------------- */
 
 /* The steps of a script that are looked at. */
-enum { QUIET = 0, STRAYS = 5, AIM_REST = 5 };
+enum { QUIET = 0, STRAYS = 5, DOUBT = 6, MOVED = 8, AIM_REST = 5 };
 
 /* A job is about to take this step of its script. */
 static void begin_job(grobo_job_kind kind, const grobo_robot_step_fn *script, unsigned at)
@@ -56,6 +56,9 @@ TEST_WITH(rig_wirings, who_leaves_waits_until_all_is_quiet)
     }
 }
 
+/* No weight has an RS30x further from its goal. */
+#define NEAR_DEG 5.0
+
 /* What a servo told of where it is going, as it was read just now. */
 typedef struct told {
     grobo_torque torque;
@@ -63,6 +66,7 @@ typedef struct told {
     bool external;
     int64_t left_us; /* of its goal's time */
     double apart_deg;
+    int dps;
     bool is_old; /* its goal was read before */
     bool astray;
     int64_t until_us; /* until when it moves then, from now */
@@ -70,20 +74,24 @@ typedef struct told {
 } told;
 
 static const told tellings[] = {
-    {GROBO_TORQUE_ON, 1, false, 0, 30, false, true, 1, 100 * MS},
-    {GROBO_TORQUE_ON, 100 * MS + 1, false, 0, 30, false, true, 100 * MS + 1, 100 * MS + 1},
-    {GROBO_TORQUE_ON, 0, false, 0, 30, false, false, 0, 0},
-    {GROBO_TORQUE_ON, -9, true, 0, 0, false, true, -9, 100 * MS},
-    {GROBO_TORQUE_ON, -9, false, 3 * S, 0.21, false, true, 3 * S - 5, 3 * S - 5},
-    {GROBO_TORQUE_ON, -9, false, 3 * S, -0.21, false, true, 3 * S - 5, 3 * S - 5},
-    {GROBO_TORQUE_ON, -9, false, 3 * S, 0.19, false, false, 0, 0},
-    {GROBO_TORQUE_ON, -9, false, 3 * S, 0.21, true, false, 0, 0},
-    {GROBO_TORQUE_ON, -9, false, 0, 30, false, false, 0, 0},
-    {GROBO_TORQUE_ON, -9, false, 1, 30, false, true, -4, 100 * MS},
-    {GROBO_TORQUE_ON, 2 * S, false, 1 * S, 30, false, true, 2 * S, 2 * S},
-    {GROBO_TORQUE_ON, 1 * S, false, 2 * S, 30, false, true, 2 * S - 5, 2 * S - 5},
-    {GROBO_TORQUE_OFF, 1, true, 3 * S, 30, false, false, 0, 0},
-    {GROBO_TORQUE_BRAKE, 1, true, 3 * S, 30, false, false, 0, 0},
+    {GROBO_TORQUE_ON, 1, false, 0, 30, 0, false, true, 1, 100 * MS},
+    {GROBO_TORQUE_ON, 100 * MS + 1, false, 0, 30, 0, false, true, 100 * MS + 1, 100 * MS + 1},
+    {GROBO_TORQUE_ON, 0, false, 0, 30, 0, false, false, 0, 0},
+    {GROBO_TORQUE_ON, -9, true, 0, 0, 0, false, true, -9, 100 * MS},
+    {GROBO_TORQUE_ON, -9, false, 3 * S, 0.21, 1, false, true, 3 * S - 5, 3 * S - 5},
+    {GROBO_TORQUE_ON, -9, false, 3 * S, -0.21, -1, false, true, 3 * S - 5, 3 * S - 5},
+    {GROBO_TORQUE_ON, -9, false, 3 * S, 0.19, 1, false, false, 0, 0},
+    {GROBO_TORQUE_ON, -9, false, 3 * S, 0.21, 1, true, false, 0, 0},
+    {GROBO_TORQUE_ON, -9, false, 0, 30, 0, false, false, 0, 0},
+    {GROBO_TORQUE_ON, -9, false, 1, 30, 0, false, true, -4, 100 * MS},
+    {GROBO_TORQUE_ON, 2 * S, false, 1 * S, 30, 0, false, true, 2 * S, 2 * S},
+    {GROBO_TORQUE_ON, 1 * S, false, 2 * S, 30, 0, false, true, 2 * S - 5, 2 * S - 5},
+    /* At no speed it may hang in its load: the next reading shows whether it creeps. */
+    {GROBO_TORQUE_ON, -9, false, 3 * S, 0.21, 0, false, false, 0, 0},
+    {GROBO_TORQUE_ON, -9, false, 3 * S, NEAR_DEG - 0.1, 0, false, false, 0, 0},
+    {GROBO_TORQUE_ON, -9, false, 3 * S, NEAR_DEG + 0.1, 0, false, true, 3 * S - 5, 3 * S - 5},
+    {GROBO_TORQUE_OFF, 1, true, 3 * S, 30, 0, false, false, 0, 0},
+    {GROBO_TORQUE_BRAKE, 1, true, 3 * S, 30, 0, false, false, 0, 0},
 };
 enum { TELLINGS = sizeof tellings / sizeof tellings[0] };
 
@@ -94,6 +102,7 @@ static void let_go_astray(int joint, const told *row)
     axis->state.goal_rad = axis->state.angle_rad + RAD(row->apart_deg);
     axis->state.goal_time_us = 4 * S + row->left_us;
     axis->state.time_us = 4 * S;
+    axis->state.speed_dps = row->dps;
     axis->own_until_us = NOW + row->own_us;
     axis->goal_us = axis->angle_us - row->is_old;
     axis->phase = row->external ? GROBO_I_JOINT_EXTERNAL : GROBO_I_JOINT_IDLE;
@@ -124,6 +133,26 @@ TEST_WITH(rig_wirings, who_leaves_stops_what_others_set_going)
             assert_true(halting() == (row->astray ? GROBO_JOINT_BIT(j) : 0));
             assert_int_equal(robot.job->at, row->astray ? QUIET : STRAYS + 1);
             assert_int_equal(robot.job->rounds, row->astray);
+        }
+    }
+}
+
+/* A joint that reports no speed, and has time left to a goal elsewhere, is stopped once it was read
+ * to have left its place; until then it is looked at again. */
+TEST_WITH(rig_wirings, who_leaves_stops_what_creeps_at_no_speed)
+{
+    static const told creeps = {GROBO_TORQUE_ON, -9, false, 3 * S, 4, 0, false, true, 0, 0};
+    for (int j = 0; j < N; j++) {
+        for (int left = 0; left < 2; left++) {
+            start();
+            begin_job(GROBO_JOB_EXIT, grobo_i_script_exit_hold, MOVED);
+            let_go_astray(j, &creeps);
+            robot.job->pending = GROBO_JOINT_BIT(j);
+            robot.axes[j].stood_us = NOW - 5;
+            robot.axes[j].still_us = left ? NOW : NOW - 100 * MS;
+            assert_int_equal(take_step(), GROBO_I_NEXT);
+            assert_true(halting() == (left ? GROBO_JOINT_BIT(j) : 0));
+            assert_int_equal(robot.job->at, left ? QUIET : DOUBT);
         }
     }
 }

@@ -81,6 +81,7 @@ TEST_WITH(rig_wirings, a_joint_is_on_its_way_but_where_it_is_weak)
             axis->seen_us = NOW - (int64_t)(since_s * S);
             axis->told_us = rows[i].told ? NOW : NOW - S / 2;
             axis->state.speed_dps = rows[i].dps;
+            axis->state.goal_rad = RAD(100);
             axis->state.valid &= (uint16_t)(rows[i].tells ? 0xFFFF : ~GROBO_FIELD_SPEED);
             axis->phase = rows[i].off ? GROBO_I_JOINT_STRAY : GROBO_I_JOINT_SENT;
             axis->own_until_us = 0;
@@ -89,6 +90,38 @@ TEST_WITH(rig_wirings, a_joint_is_on_its_way_but_where_it_is_weak)
             if (fabs(deg - rows[i].deg - on_deg) > 0.01) {
                 fail_msg("row %zu: at %.2f deg", i, deg);
             }
+        }
+    }
+}
+
+/* It lost the frame that sends it away, and hangs in its goal of before: a halt keeps that, so near
+ * and at rest, and where the time of that goal is over. */
+TEST_WITH(rig_wirings, a_joint_that_lost_its_frame_hangs_in_its_goal)
+{
+    static const struct {
+        double beyond_deg;
+        int32_t dps;
+        bool over, hangs;
+    } rows[] = {{2, 0, true, true},    {-2, 0, true, true}, {4.9, 0, true, true},
+                {5.1, 0, true, false}, {2, 1, true, false}, {2, 0, false, false}};
+    for (int j = 0; j < N; j++) {
+        for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+            start();
+            grobo_robot_axis *axis = &robot.axes[j];
+            axis->trajectory =
+                (grobo_robot_trajectory){RAD(30), RAD(100), NOW - S / 2, NOW + S / 2};
+            axis->state.angle_rad = axis->seen_rad = RAD(30);
+            axis->seen_us = axis->angle_us = NOW;
+            axis->goal_us = NOW - S;
+            axis->state.goal_rad = RAD(30 + rows[i].beyond_deg);
+            axis->state.goal_time_us = S;
+            axis->state.time_us = rows[i].over ? S : S / 2;
+            axis->state.speed_dps = rows[i].dps;
+            axis->state.torque = GROBO_TORQUE_ON;
+            axis->phase = GROBO_I_JOINT_STRAY;
+            axis->own_until_us = 0;
+            expect_equal(grobo_i_axis_commanded(axis, NOW) / RAD(1),
+                         30 + (rows[i].hangs ? rows[i].beyond_deg : 0), "its set point");
         }
     }
 }

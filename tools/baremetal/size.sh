@@ -33,7 +33,8 @@ names='base/error servo/rs30x/registers play/names base/version robot/reason'
 postures='model/posture model/model model/order model/interpolate model/unit'
 robot='servo/driver servo/rs30x/driver robots/gr001 robots/gr001_driver'
 engine='robot/robot robot/turn robot/job robot/play robot/control robot/query robot/request
-    robot/slot robot/steps robot/axis robot/trajectories play/progress play/start robot/start
+    robot/slot robot/steps robot/astray robot/axis robot/trajectories play/progress play/start
+    robot/start
     robot/gate robot/couple robot/wheel robot/drive robot/check robot/lines
     robot/event robot/reading robot/orders robot/watch robot/trip robot/stop robot/segments
     robot/sense robot/cost robot/budget robot/holds robot/join robot/pace robot/queue

@@ -164,6 +164,8 @@ typedef struct grobo_robot_axis {
     int64_t over_us;    /* and when; GROBO_NEVER_US: it is not */
     int64_t looked_us;  /* when it was judged last */
     bool was_near;      /* it was seen nearer than that since it is */
+    double apart_rad;   /* goal less angle of one that its servo tells no speed of, where it was */
+    int64_t apart_us;   /* sent nowhere, and since when that is the same; 0: it was sent */
     double asked_rad_s; /* of a wheel: the speed asked for, */
     int64_t asked_until_us; /* and until when that holds */
     double told_rad_s;      /* the speed that a frame told it last, */
