@@ -87,10 +87,10 @@ static void refresh_ax(far_joint *joint)
     int speed = (int)lround(fabs(joint->dps) / AX_SPEED_DPS);
     far_put16(joint->reg + 36, (int)lround(joint->at_deg / AX_STEP_DEG) + AX_MIDDLE);
     far_put16(joint->reg + 38, joint->dps < 0 ? 0x400 | speed : speed);
-    far_put16(joint->reg + 40, joint->dps != 0 ? 100 : 10);
+    far_put16(joint->reg + 40, far_is_moving(joint) ? 100 : 10);
     joint->reg[42] = 120;
     joint->reg[43] = (uint8_t)joint->celsius;
-    joint->reg[46] = joint->dps != 0;
+    joint->reg[46] = far_is_moving(joint);
 }
 
 static const far_dxl1_layout ax = {.goal = AX_GOAL, .torque = AX_TORQUE, .refresh = refresh_ax};
@@ -145,10 +145,10 @@ static void refresh_mx(far_joint *joint)
     int speed = (int)lround(fabs(joint->dps) / MX_SPEED_DPS);
     far_put16(joint->reg + 36, (int)lround(joint->at_deg / MX_STEP_DEG) + MX_MIDDLE);
     far_put16(joint->reg + 38, joint->dps < 0 ? 0x400 | speed : speed);
-    far_put16(joint->reg + 40, joint->dps != 0 ? 100 : 10);
+    far_put16(joint->reg + 40, far_is_moving(joint) ? 100 : 10);
     joint->reg[42] = 120;
     joint->reg[43] = (uint8_t)joint->celsius;
-    joint->reg[46] = joint->dps != 0;
+    joint->reg[46] = far_is_moving(joint);
 }
 
 static const far_dxl1_layout mx = {
@@ -241,8 +241,8 @@ static void refresh_sts(far_joint *joint)
     far_put16(joint->reg + 60, 0);
     joint->reg[62] = joint->reg[STS_VOLTS];
     joint->reg[63] = (uint8_t)joint->celsius;
-    joint->reg[66] = joint->dps != 0;
-    far_put16(joint->reg + 69, joint->dps != 0 ? 20 : 2);
+    joint->reg[66] = far_is_moving(joint);
+    far_put16(joint->reg + 69, far_is_moving(joint) ? 20 : 2);
     far_put16(joint->reg + (joint->family == &far_hls ? 67 : 71), far_get16(joint->reg + STS_GOAL));
 }
 
@@ -304,7 +304,7 @@ static void plan_scs(const far_joint *joint, double *goal_deg, double *cruise_dp
     goal = goal < least ? least : goal > most ? most : goal;
     *goal_deg = (goal - SCS_MIDDLE) * SCS_STEP_DEG;
     *cruise_dps = speed > 0 ? speed * SCS_STEP_DEG
-                  : ms > 0  ? fabs(*goal_deg - joint->at_deg) * 1000 / ms
+                  : ms > 0  ? fabs(*goal_deg - joint->set_deg) * 1000 / ms
                             : 0;
     *accel_dps2 = 0;
 }
@@ -325,7 +325,7 @@ static void refresh_scs(far_joint *joint)
     put_high(joint->reg + 60, 0);
     joint->reg[62] = 60;
     joint->reg[63] = (uint8_t)joint->celsius;
-    joint->reg[66] = joint->dps != 0;
+    joint->reg[66] = far_is_moving(joint);
 }
 
 static const far_dxl1_layout scs = {.goal = STS_GOAL, .torque = STS_TORQUE, .refresh = refresh_scs};
@@ -344,6 +344,7 @@ const far_dxl1_layout *far_dxl1_layout_of(const far_family *family)
 
 const far_family far_dxl1 = {COMMON,
                              .name = "dxl1",
+                             .loop = {25, 0.33, 0.37, 9.4, 3},
                              .top_dps = 354,
                              .step_deg = AX_STEP_DEG,
                              .count_dps = AX_SPEED_DPS,
@@ -353,6 +354,7 @@ const far_family far_dxl1 = {COMMON,
                              .hold = hold_ax};
 const far_family far_sts = {COMMON,
                             .name = "sts",
+                            .loop = {14.5, 0.5, 0.34, 12.3, 4},
                             .top_dps = 300,
                             .step_deg = STS_STEP_DEG,
                             .count_dps = STS_STEP_DEG,
@@ -369,6 +371,7 @@ const far_family far_sm = {.baud_bps = 1000000,
                            .sound = far_dxl1_sound,
                            .obey = far_dxl1_obey,
                            .name = "sm",
+                           .loop = {14.5, 0.5, 0.34, 12.3, 4},
                            .top_dps = 270,
                            .step_deg = STS_STEP_DEG,
                            .count_dps = STS_STEP_DEG,
@@ -378,6 +381,7 @@ const far_family far_sm = {.baud_bps = 1000000,
                            .hold = hold_sts};
 const far_family far_hls = {COMMON,
                             .name = "hls",
+                            .loop = {14.5, 0.5, 0.34, 12.3, 4},
                             .top_dps = 272,
                             .step_deg = STS_STEP_DEG,
                             .count_dps = HLS_COUNT_DPS,
@@ -387,6 +391,7 @@ const far_family far_hls = {COMMON,
                             .hold = hold_sts};
 const far_family far_mx = {COMMON,
                            .name = "mx",
+                           .loop = {31, 0.34, 0.17, 10.8, 3},
                            .top_dps = 330,
                            .step_deg = MX_STEP_DEG,
                            .count_dps = MX_SPEED_DPS,
@@ -396,6 +401,7 @@ const far_family far_mx = {COMMON,
                            .hold = hold_mx};
 const far_family far_scs = {COMMON,
                             .name = "scs",
+                            .loop = {25, 0.4, 0.4, 10, 3},
                             .top_dps = 600,
                             .step_deg = SCS_STEP_DEG,
                             .moves = moves_sts,

@@ -133,7 +133,7 @@ static void plan_profile(const far_joint *joint, double *goal_deg, double *cruis
     const profile *its = profile_of(joint);
     int32_t ms = get32(joint->reg + its->time);
     *goal_deg = (get32(joint->reg + its->goal) - its->middle) * joint->family->step_deg;
-    *cruise_dps = ms > 0 ? fabs(*goal_deg - joint->at_deg) * 1000 / ms : 0;
+    *cruise_dps = ms > 0 ? fabs(*goal_deg - joint->set_deg) * 1000 / ms : 0;
     *accel_dps2 = 0;
 }
 
@@ -144,7 +144,7 @@ static void hold_profile(far_joint *joint, double deg, double dps, int64_t now_u
     joint->heard_us = now_us;
     put32(joint->reg + its->goal, (int32_t)lround(deg / joint->family->step_deg) + its->middle);
     put32(joint->reg + its->time,
-          dps > 0 ? (int32_t)lround(fabs(deg - joint->at_deg) / dps * 1000) : 0);
+          dps > 0 ? (int32_t)lround(fabs(deg - joint->set_deg) / dps * 1000) : 0);
 }
 
 /* Nothing was said to it for so long: it stops and takes no goal. */
@@ -157,8 +157,8 @@ static void watch_profile(far_joint *joint, int64_t now_us)
         joint->torque == 1 && ends_us < now_us) {
         far_turn_to(joint, ends_us);
         joint->waits = false;
-        joint->dps = 0;
-        joint->goal_deg = joint->at_deg;
+        joint->set_dps = 0;
+        joint->goal_deg = joint->set_deg;
         put32(joint->reg + its->ramp, 0);
         put32(joint->reg + its->time, 0);
         put32(joint->reg + its->velocity, 0);
@@ -179,10 +179,11 @@ static void refresh_profile(far_joint *joint)
     const profile *its = profile_of(joint);
     int32_t position = (int32_t)lround(joint->at_deg / joint->family->step_deg) + its->middle;
     put32(joint->reg + its->position, position);
-    put32(joint->reg + its->trajectory, position);
+    put32(joint->reg + its->trajectory,
+          (int32_t)lround(joint->set_deg / joint->family->step_deg) + its->middle);
     put32(joint->reg + its->speed, (int32_t)lround(joint->dps / its->speed_dps));
-    far_put16(joint->reg + its->load, joint->dps != 0 ? 100 : 5);
-    joint->reg[its->moving] = joint->dps != 0;
+    far_put16(joint->reg + its->load, far_is_moving(joint) ? 100 : 5);
+    joint->reg[its->moving] = far_is_moving(joint);
     far_put16(joint->reg + its->supply, its->supply_01v);
     joint->reg[its->heat] = (uint8_t)joint->celsius;
 }
@@ -271,10 +272,10 @@ static void refresh_xl320(far_joint *joint)
     int position = (int)lround(joint->at_deg / XL320_STEP_DEG) + XL320_MIDDLE;
     far_put16(joint->reg + XL320_POSITION, position);
     far_put16(joint->reg + 39, joint->dps < 0 ? speed | XL320_SENSE : speed);
-    far_put16(joint->reg + 41, joint->dps != 0 ? 100 : 5);
+    far_put16(joint->reg + 41, far_is_moving(joint) ? 100 : 5);
     joint->reg[45] = 74;
     joint->reg[46] = (uint8_t)joint->celsius;
-    joint->reg[49] = joint->dps != 0;
+    joint->reg[49] = far_is_moving(joint);
 }
 
 static const far_dxl2_layout xl320 = {.part = {{0, FAR_REGISTERS, 0}},
@@ -345,10 +346,10 @@ static void spin_pro(far_joint *joint)
 
 static void refresh_pro(far_joint *joint)
 {
-    joint->reg[PRO_AT(610)] = joint->dps != 0;
+    joint->reg[PRO_AT(610)] = far_is_moving(joint);
     put32(joint->reg + PRO_AT(611), (int32_t)lround(joint->at_deg / PRO_STEP_DEG));
     put32(joint->reg + PRO_AT(615), (int32_t)lround(joint->dps / PRO_SPEED_DPS));
-    far_put16(joint->reg + PRO_AT(621), joint->dps != 0 ? 100 : 5);
+    far_put16(joint->reg + PRO_AT(621), far_is_moving(joint) ? 100 : 5);
     far_put16(joint->reg + PRO_AT(623), 240);
     joint->reg[PRO_AT(625)] = (uint8_t)joint->celsius;
 }
@@ -382,6 +383,7 @@ const far_dxl2_layout *far_dxl2_layout_of(const far_family *family)
 
 const far_family far_dxl2 = {COMMON,
                              .name = "dxl2",
+                             .loop = {16, 0.6, 1.3, 50, 4},
                              .top_dps = 366,
                              .step_deg = 360.0 / 4096,
                              .moves = moves_x,
@@ -391,6 +393,7 @@ const far_family far_dxl2 = {COMMON,
                              .watch = watch_profile};
 const far_family far_p = {COMMON,
                           .name = "p",
+                          .loop = {40, 0.8, 0.1, 20, 2},
                           .top_dps = 196,
                           .step_deg = 360.0 / 607500,
                           .moves = moves_p,
@@ -400,6 +403,7 @@ const far_family far_p = {COMMON,
                           .watch = watch_profile};
 const far_family far_xl320 = {COMMON,
                               .name = "xl320",
+                              .loop = {15.5, 0.7, 4.7, 35, 5},
                               .top_dps = 684,
                               .step_deg = XL320_STEP_DEG,
                               .count_dps = XL320_SPEED_DPS,
@@ -409,6 +413,7 @@ const far_family far_xl320 = {COMMON,
                               .hold = hold_xl320};
 const far_family far_pro = {COMMON,
                             .name = "pro",
+                            .loop = {40, 0.8, 0.1, 20, 2},
                             .top_dps = 199,
                             .step_deg = PRO_STEP_DEG,
                             .count_dps = PRO_SPEED_DPS,

@@ -166,7 +166,7 @@ static void answer_read(far_side *far, far_joint *joint, const uint8_t *frame)
         back[2] = joint->reg[AT_SPEED];
         break;
     case SC_CURRENT:
-        back[2] = joint->dps != 0 ? 2 : 0;
+        back[2] = far_is_moving(joint) ? 2 : 0;
         break;
     case SC_HEAT:
         back[2] = (uint8_t)heat_of(joint);
@@ -203,6 +203,7 @@ static void obey(far_side *far, const uint8_t *frame, int n)
 }
 
 const far_family far_ics = {.name = "ics",
+                            .loop = {25, 0.5, 0.5, 12, 3},
                             .baud_bps = 115200,
                             .bits_a_byte = 11,
                             .echo = true,

@@ -49,7 +49,7 @@ static void plan(const far_joint *joint, double *goal_deg, double *cruise_dps, d
 {
     int ms = far_get16(joint->reg + AT_TIME);
     *goal_deg = (far_get16(joint->reg + AT_GOAL) - MIDDLE) * STEP_DEG;
-    *cruise_dps = ms > 0 ? fabs(*goal_deg - joint->at_deg) * 1000 / ms : 0;
+    *cruise_dps = ms > 0 ? fabs(*goal_deg - joint->set_deg) * 1000 / ms : 0;
     *accel_dps2 = 0;
 }
 
@@ -57,7 +57,7 @@ static void hold(far_joint *joint, double deg, double dps, int64_t now_us)
 {
     (void)now_us;
     far_put16(joint->reg + AT_GOAL, (int)lround(deg / STEP_DEG) + MIDDLE);
-    double ms = dps > 0 ? fabs(deg - joint->at_deg) / dps * 1000 : 0;
+    double ms = dps > 0 ? fabs(deg - joint->set_deg) / dps * 1000 : 0;
     far_put16(joint->reg + AT_TIME, (int)lround(fmin(ms, TIME_MAX_MS)));
 }
 
@@ -161,6 +161,7 @@ static void obey(far_side *far, const uint8_t *frame, int n)
 }
 
 const far_family far_lx16a = {.name = "lx16a",
+                              .loop = {25, 0.35, 0.4, 8, 2.5},
                               .baud_bps = 115200,
                               .bits_a_byte = 10,
                               .dead_us = 2000,

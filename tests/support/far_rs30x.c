@@ -49,7 +49,7 @@ static void plan(const far_joint *joint, double *goal_deg, double *cruise_dps, d
 {
     int cs = far_get16(joint->reg + AT_TIME);
     *goal_deg = far_signed16(joint->reg + AT_GOAL) / 10.0;
-    *cruise_dps = cs > 0 ? fabs(*goal_deg - joint->at_deg) * 100 / cs : 0;
+    *cruise_dps = cs > 0 ? fabs(*goal_deg - joint->set_deg) * 100 / cs : 0;
     *accel_dps2 = 0;
 }
 
@@ -58,18 +58,18 @@ static void hold(far_joint *joint, double deg, double dps, int64_t now_us)
     (void)now_us;
     far_put16(joint->reg + AT_GOAL, (int)lround(deg * 10));
     far_put16(joint->reg + AT_TIME,
-              dps > 0 ? (int)lround(fabs(deg - joint->at_deg) / dps * 100) : 0);
+              dps > 0 ? (int)lround(fabs(deg - joint->set_deg) / dps * 100) : 0);
     joint->reg[AT_TORQUE] = (uint8_t)joint->torque;
 }
 
 static void refresh(far_joint *joint, int64_t now_us)
 {
-    int64_t since_us = now_us - joint->begun_us;
-    since_us = since_us < joint->length_us ? since_us : joint->length_us;
+    int64_t since_us = now_us - joint->begun_us, time_us = far_get16(joint->reg + AT_TIME) * 10000;
+    since_us = since_us < time_us ? since_us : time_us; /* wherever its goal is */
     far_put16(joint->reg + AT_POSITION, (int)lround(joint->at_deg * 10));
     far_put16(joint->reg + AT_SINCE, (int)(since_us / 10000));
     far_put16(joint->reg + AT_SPEED, (int)lround(fabs(joint->dps)));
-    far_put16(joint->reg + AT_CURRENT, joint->dps != 0 ? 120 : 20);
+    far_put16(joint->reg + AT_CURRENT, far_is_moving(joint) ? 120 : 20);
     far_put16(joint->reg + AT_HEAT, joint->celsius);
     far_put16(joint->reg + AT_SUPPLY, 740);
 }
@@ -227,7 +227,7 @@ static void obey_board(far_side *far, const uint8_t *frame, int n)
 
 #define COMMON                                                                                     \
     .baud_bps = 115200, .bits_a_byte = 10, .dead_us = 2000, .think_us = 100, .top_dps = 450,       \
-    .step_deg = 0.1, .begin = begin, .plan = plan, .hold = hold
+    .step_deg = 0.1, .loop = {30, 0.5, 0.4, 8, 2.5}, .begin = begin, .plan = plan, .hold = hold
 
 const far_family far_bus = {COMMON,
                             .name = "bus",

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* How a shaft of the far side turns. */
+/* How a set point of the far side goes to its goal, and the shaft with it. */
 #include <math.h>
 #include <string.h>
 
@@ -16,36 +16,36 @@ static void arrive(far_joint *joint, double dps, double seconds)
 {
     joint->last_dps = dps;
     joint->last_us = joint->at_us + (int64_t)(seconds * SECOND_US);
-    joint->at_deg = joint->goal_deg;
-    joint->dps = 0;
+    joint->set_deg = joint->goal_deg;
+    joint->set_dps = 0;
 }
 
 /* Straight: no ramps. */
 static void glide(far_joint *joint, double seconds)
 {
-    double way_deg = joint->goal_deg - joint->at_deg;
+    double way_deg = joint->goal_deg - joint->set_deg;
     double step_deg = joint->cruise_dps * seconds;
     if (fabs(way_deg) <= step_deg + EQUAL_DEG) {
         arrive(joint, copysign(joint->cruise_dps, way_deg), fabs(way_deg) / joint->cruise_dps);
         return;
     }
-    joint->dps = copysign(joint->cruise_dps, way_deg);
-    joint->at_deg += joint->dps * seconds;
+    joint->set_dps = copysign(joint->cruise_dps, way_deg);
+    joint->set_deg += joint->set_dps * seconds;
 }
 
 /* It speeds up and brakes; a goal that is nearer than it can brake is passed, and come back to. */
 static void ramp(far_joint *joint, double seconds)
 {
-    double way_deg = joint->goal_deg - joint->at_deg;
+    double way_deg = joint->goal_deg - joint->set_deg;
     double change_dps = joint->accel_dps2 * seconds;
     double most_dps = fmin(joint->cruise_dps, sqrt(2 * joint->accel_dps2 * fabs(way_deg)));
     double want_dps = copysign(most_dps, way_deg);
-    if (fabs(way_deg) < NEAR_DEG && fabs(joint->dps) <= 2 * change_dps) {
-        arrive(joint, joint->dps, 0);
+    if (fabs(way_deg) < NEAR_DEG && fabs(joint->set_dps) <= 2 * change_dps) {
+        arrive(joint, joint->set_dps, 0);
         return;
     }
-    joint->dps += fmin(fmax(want_dps - joint->dps, -change_dps), change_dps);
-    joint->at_deg += joint->dps * seconds;
+    joint->set_dps += fmin(fmax(want_dps - joint->set_dps, -change_dps), change_dps);
+    joint->set_deg += joint->set_dps * seconds;
 }
 
 /* Its loop of speed is without a ramp of its own. */
@@ -54,8 +54,28 @@ static void spin(far_joint *joint, int64_t until_us)
     joint->dps = joint->torque == 1 ? joint->wheel_dps : 0;
     joint->dps = fmin(fmax(joint->dps, -joint->top_dps), joint->top_dps);
     joint->at_deg += joint->dps * (double)(until_us - joint->at_us) / SECOND_US;
-    joint->goal_deg = joint->at_deg;
+    joint->goal_deg = joint->set_deg = joint->at_deg;
+    joint->set_dps = 0;
     joint->at_us = until_us;
+}
+
+static void advance(far_joint *joint, double seconds)
+{
+    if (joint->torque != 1 || (joint->set_dps == 0 && joint->set_deg == joint->goal_deg)) {
+        joint->set_dps = 0;
+    } else if (joint->accel_dps2 > 0) {
+        ramp(joint, seconds);
+    } else {
+        glide(joint, seconds);
+    }
+}
+
+/* How long one step may be. */
+static int64_t slice_of(const far_joint *joint)
+{
+    bool at_goal = joint->torque != 1 || (joint->set_dps == 0 && joint->set_deg == joint->goal_deg);
+    bool steps = joint->sag_deg != 0 || (joint->accel_dps2 > 0 && !at_goal);
+    return steps ? SLICE_US : INT64_MAX;
 }
 
 static void turn(far_joint *joint, int64_t until_us)
@@ -64,27 +84,18 @@ static void turn(far_joint *joint, int64_t until_us)
         spin(joint, until_us > joint->at_us ? until_us : joint->at_us);
         return;
     }
-    if (joint->torque != 1 || (joint->dps == 0 && joint->at_deg == joint->goal_deg)) {
-        joint->dps = 0;
-        joint->at_us = until_us;
-        return;
-    }
     while (joint->at_us < until_us) {
-        int64_t slice_us = until_us - joint->at_us;
-        if (joint->accel_dps2 > 0) {
-            slice_us = slice_us < SLICE_US ? slice_us : SLICE_US;
-            ramp(joint, (double)slice_us / SECOND_US);
+        int64_t left_us = until_us - joint->at_us, most_us = slice_of(joint);
+        double seconds = (double)(left_us < most_us ? left_us : most_us) / SECOND_US;
+        advance(joint, seconds);
+        if (joint->sag_deg != 0) {
+            far_pull(joint, seconds);
         } else {
-            glide(joint, (double)slice_us / SECOND_US);
+            joint->at_deg = joint->set_deg;
+            joint->dps = joint->set_dps;
         }
-        joint->at_us += slice_us;
+        joint->at_us += left_us < most_us ? left_us : most_us;
     }
-}
-
-static double length_of(const far_joint *joint)
-{
-    double way_deg = fabs(joint->goal_deg - joint->at_deg);
-    return joint->cruise_dps > 0 ? way_deg / joint->cruise_dps * SECOND_US : 0;
 }
 
 /* Begins the way to the goal that the registers hold. */
@@ -97,7 +108,6 @@ static void set_out(far_joint *joint)
     }
     joint->leaps = false;
     joint->begun_us = joint->at_us;
-    joint->length_us = (int64_t)length_of(joint);
 }
 
 void far_turn_to(far_joint *joint, int64_t now_us)
@@ -123,5 +133,6 @@ bool far_turns(far_side *far, int joint, int64_t now_us)
 {
     const far_joint *j = &far->joint[joint];
     (void)far_angle(far, joint, now_us);
-    return j->torque == 1 && (j->waits || j->dps != 0 || fabs(j->goal_deg - j->at_deg) > NEAR_DEG);
+    bool goes = j->waits || j->set_dps != 0 || fabs(j->goal_deg - j->set_deg) > NEAR_DEG;
+    return (j->torque == 1 && goes) || j->dps != 0;
 }

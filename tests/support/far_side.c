@@ -99,8 +99,9 @@ void far_torque(far_side *far, far_joint *joint, int torque)
     joint->torque = torque;
     if (torque != 1) {
         joint->waits = false;
-        joint->dps = 0;
-        joint->goal_deg = joint->at_deg;
+        joint->set_dps = 0;
+        joint->goal_deg = joint->set_deg = joint->at_deg;
+        joint->dps = joint->sag_deg != 0 ? joint->dps : 0;
     } else if (before != 1) {
         joint->waits = joint->leaps = true;
         joint->wakes_us = far->now_us + far->family->dead_us;
@@ -113,11 +114,10 @@ void far_put(far_side *far, int joint, double deg, bool holds, int64_t now_us)
     far_joint *j = &far->joint[joint];
     far_turn_to(j, now_us);
     j->waits = false;
-    j->at_deg = j->goal_deg = deg;
-    j->dps = 0;
+    j->at_deg = j->set_deg = j->goal_deg = deg;
+    j->dps = j->set_dps = 0;
     j->torque = holds;
     j->begun_us = now_us;
-    j->length_us = 0;
     j->family->hold(j, deg, 0, now_us);
 }
 
@@ -131,7 +131,6 @@ void far_foreign(far_side *far, int joint, double deg, double dps, int64_t now_u
     j->cruise_dps = dps;
     j->accel_dps2 = 0;
     j->begun_us = now_us;
-    j->length_us = (int64_t)(fabs(deg - j->at_deg) / dps * 1e6);
     j->family->hold(j, deg, dps, now_us);
 }
 

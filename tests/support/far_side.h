@@ -6,8 +6,10 @@
  * protocol 2 (X, P, PRO, XL-320) and 1 (AX, MX), Feetech STS, SM, HLS and SCS, KRS (ICS 3.6) and
  * LX-16A.
  *
- * A shaft goes straight to its goal in the time or at the speed that its registers hold, with the
- * ramps of servos that have them, after the dead time of its servo. Angles are the servo's, in
+ * A servo's set point goes straight to its goal in the time or at the speed that its registers
+ * hold, with the ramps of servos that have them, after the dead time of its servo. The shaft is at
+ * its set point, unless it carries a weight (far_weigh(), far_weight.c): then a position loop pulls
+ * it there, and it lags, sags, swings, and falls without torque. Angles are the servo's, in
  * degrees; 0 is the middle of its range. Plain data: a copy of a far_side is a far side.
  */
 #ifndef GROBO_TESTS_FAR_SIDE_H
@@ -35,14 +37,16 @@ typedef struct far_side far_side;
 typedef struct far_joint {
     const far_family *family;
     int id;
-    int torque; /* 0 off, 1 on, 2 brake (RS30x) */
-    double at_deg, dps;
-    double last_dps; /* of its last way, which ended then */
+    int torque;              /* 0 off, 1 on, 2 brake (RS30x) */
+    double at_deg, dps;      /* of the shaft */
+    double set_deg, set_dps; /* of the set point: the same where the shaft carries no weight */
+    double sag_deg;          /* its weight stretched out at 0, as an error of its loop; 0: none */
+    double last_dps;         /* of the set point's last way, which ended then */
     int64_t last_us;
     double goal_deg, cruise_dps, accel_dps2; /* 0: no ramps */
     double top_dps;                          /* the servo's own speed */
     int64_t at_us;                           /* time of at_deg */
-    int64_t begun_us, length_us;             /* of the way to goal_deg */
+    int64_t begun_us;                        /* of the way to goal_deg */
     bool waits;                              /* a goal came, its dead time is not over */
     int64_t wakes_us;
     int64_t heard_us; /* of the watchdog */
@@ -81,8 +85,18 @@ typedef struct far_reply {
     uint8_t bytes[FAR_REPLY_BYTES];
 } far_reply;
 
+/* The loop of a servo and the weight that it carries, by the error between set point and shaft. */
+typedef struct far_loop {
+    double rad_s,
+        damping;         /* of the swing that a set point causes: its frequency, and its damping */
+    double friction_deg; /* the error below which a shaft that stands does not turn */
+    double most_deg;     /* the error from which on the torque does not rise */
+    double weight_deg; /* the error that carries what robots of these servos have, stretched out */
+} far_loop;
+
 struct far_family {
     const char *name;
+    far_loop loop;
     int baud_bps, bits_a_byte; /* as sold, or as robots have it */
     bool echo;                 /* the host hears itself */
     int64_t dead_us;           /* from a goal to the first turn */
@@ -148,6 +162,12 @@ void far_step(far_side *far, int64_t now_us);
 double far_angle(far_side *far, int joint, int64_t now_us);
 /* True while the shaft turns, or will. */
 bool far_turns(far_side *far, int joint, int64_t now_us);
+/* Joints carry their weight from now on, which draws them to smaller angles. */
+void far_weigh(far_side *far, int64_t now_us);
+/* Where a joint that carries a weight hangs in a set point, friction left out; and the error that
+ * carries it at an angle. */
+double far_hangs_deg(const far_joint *joint, double set_deg);
+double far_carries_deg(const far_joint *joint, double deg);
 /* Another program's doing: where a shaft is and holds; a goal with torque, at a speed. */
 void far_put(far_side *far, int joint, double deg, bool holds, int64_t now_us);
 void far_foreign(far_side *far, int joint, double deg, double dps, int64_t now_us);
@@ -158,6 +178,8 @@ int64_t far_wire_us(const far_side *far, int bytes);
 
 far_joint *far_find(far_side *far, int id);
 void far_turn_to(far_joint *joint, int64_t now_us); /* brings the shaft to now */
+void far_pull(far_joint *joint, double seconds);    /* of one that carries a weight, a short time */
+bool far_is_moving(const far_joint *joint);         /* as its servo reports */
 void far_goal(far_side *far, far_joint *joint);     /* its registers hold a new goal */
 void far_torque(far_side *far, far_joint *joint, int torque);
 /* Answers behind the replies that are due already; told: whose place that tells, or NULL. */

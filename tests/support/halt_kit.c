@@ -24,6 +24,8 @@
 /* A shaft that stands; of a reading's step. */
 #define STILL_DEG 0.5
 #define STILL_DPS 0.05
+#define HANGS_DPS 0.5
+#define HANGS_DEG 0.05
 /* A speed in counts of its register is rounded up: of KRS that is 3.9 deg/s. */
 #define COUNT_DPS 4.0
 #define COUNT_S 0.6
@@ -38,7 +40,7 @@
 #define UNKNOWN_US 100000
 
 halt_world halt;
-bool halt_traced;
+bool halt_traced, halt_weighs;
 
 /* ---- robots ---------------------------------------------------------------------------------- */
 
@@ -276,6 +278,9 @@ static void on_event(void *ctx, const grobo_event *event)
     } else if (event->kind == GROBO_EVENT_TRIP && halt.trip_us == 0) {
         halt.trip_us = event->now_us;
         halt.trip = event->u.trip.trip;
+        if (halt.weighs && (halt.trip == GROBO_TRIP_BLOCKED || halt.trip == GROBO_TRIP_OVERLOAD)) {
+            halt_blame("a weight is taken for a wall", event->u.trip.joint, event->u.trip.value, 0);
+        }
         if (halt.judges_trip) {
             halt_judge(halt.trip_soft_us);
         }
@@ -304,9 +309,18 @@ void halt_begin(const halt_robot *robot, double deg)
     far_begin(&halt.far, robot->far, robot->n_joints, halt.now_us);
     halt.far.baud_bps = robot->baud_bps;
     halt.far.hear = hear;
-    far_put(&halt.far, far_of(robot->moved), deg, false, halt.now_us);
+    halt.weighs = halt_weighs;
+    for (int i = 0; halt.weighs && i < robot->n_joints; i++) {
+        far_put(&halt.far, i, 0, true, halt.now_us);
+    }
+    far_put(&halt.far, far_of(robot->moved), deg, halt.weighs, halt.now_us);
     if (halt_is_paired(robot)) {
-        far_put(&halt.far, far_of(PAIR), deg, false, halt.now_us);
+        far_put(&halt.far, far_of(PAIR), deg, halt.weighs, halt.now_us);
+    }
+    if (halt.weighs) {
+        far_weigh(&halt.far, halt.now_us);
+        halt.now_us += 2 * HALT_S;
+        far_step(&halt.far, halt.now_us);
     }
     halt_new_engine(&config);
 }
@@ -410,7 +424,8 @@ static double turning_dps(const far_joint *joint)
     bool unknown = halt.blind && joint->family == &far_ics;
     int64_t ago_us = unknown ? UNKNOWN_US : halt.streamed ? PAUSE_US : 0;
     bool just_now = halt.now_us - joint->last_us < ago_us;
-    return joint->dps != 0 || !just_now ? joint->dps : joint->last_dps;
+    double dps = fabs(joint->set_dps) > fabs(joint->dps) ? joint->set_dps : joint->dps;
+    return dps != 0 || !just_now ? dps : joint->last_dps;
 }
 
 static double braking_deg(const far_joint *joint, double dps)
@@ -431,8 +446,23 @@ static double outside(double deg, double from_deg, double to_deg)
     return fmax(fmax(from_deg - deg, deg - to_deg), 0);
 }
 
-/* Where a halt may send a joint that it reaches now: from where it was as the frame left, over
- * where it is, to where it can come to rest; a soft stop, so much further on its way. */
+double halt_stays_deg(const far_joint *joint)
+{
+    return fmax(STILL_DEG, 2 * joint->family->step_deg);
+}
+
+/* True of one that hangs in its load, and so stays where it is. */
+static bool hangs(const far_joint *joint)
+{
+    double off_deg = joint->set_deg - joint->at_deg - far_carries_deg(joint, joint->at_deg);
+    return joint->sag_deg != 0 && joint->torque == 1 && !joint->waits && joint->set_dps == 0 &&
+           joint->set_deg == joint->goal_deg && fabs(joint->dps) < HANGS_DPS &&
+           fabs(off_deg) <= joint->family->loop.friction_deg + HANGS_DEG;
+}
+
+/* Where a halt may bring a joint to rest that it reaches now: from where it was as the frame left,
+ * over where it is, to where it can come to rest; a soft stop, so much further on its way. One that
+ * lags behind its set point, or swings, may hang in that. */
 static void may_go(const far_joint *joint, const far_news *news, const halt_base *base,
                    double *from_deg, double *to_deg)
 {
@@ -446,8 +476,10 @@ static void may_go(const far_joint *joint, const far_news *news, const halt_base
     double brake_deg = copysign(braking_deg(joint, dps), dps) + dps * dead_s;
     double soft_deg = (fabs(dps) > fabs(base->asked_dps) ? dps : base->asked_dps) * soft_s;
     double on_deg = joint->at_deg + brake_deg + soft_deg;
-    *from_deg = fmin(fmin(news->left_deg, joint->at_deg), on_deg);
-    *to_deg = fmax(fmax(news->left_deg, joint->at_deg), on_deg);
+    double rests_deg = far_hangs_deg(joint, joint->set_deg + brake_deg + soft_deg);
+    double hangs_deg = far_hangs_deg(joint, joint->set_deg);
+    *from_deg = fmin(fmin(news->left_deg, joint->at_deg), fmin(on_deg, fmin(hangs_deg, rests_deg)));
+    *to_deg = fmax(fmax(news->left_deg, joint->at_deg), fmax(on_deg, fmax(hangs_deg, rests_deg)));
 }
 
 /* No frame asks more than the joint's speed of the shaft, from where that is: 1 % and one count of
@@ -455,7 +487,8 @@ static void may_go(const far_joint *joint, const far_news *news, const halt_base
  * less what the shaft went on while the frame was under way. */
 static void judge_speed(const far_joint *joint, const far_news *news)
 {
-    double way_deg = fabs(news->goal_deg - joint->at_deg);
+    double way_deg =
+        fmin(fabs(news->goal_deg - joint->at_deg), fabs(news->goal_deg - joint->set_deg));
     double lag_deg = fabs(joint->at_deg - news->left_deg) + joint->family->step_deg + halt.lag_deg;
     double most_dps = (top_dps(news->joint) + COUNT_DPS) * 1.01;
     double asked_dps = news->ask_dps > 0 ? news->ask_dps : INFINITY;
@@ -463,7 +496,8 @@ static void judge_speed(const far_joint *joint, const far_news *news)
     if (way_deg <= lag_deg + (timed ? SLACK_DEG / 2 : 0)) {
         return; /* it stays where it is */
     }
-    asked_dps *= timed && !isinf(asked_dps) ? (way_deg - lag_deg) / way_deg : 1;
+    double whole_deg = fabs(news->goal_deg - joint->set_deg); /* in that time */
+    asked_dps *= timed && !isinf(asked_dps) ? (way_deg - lag_deg) / whole_deg : 1;
     if (asked_dps > most_dps) {
         halt_blame("faster than the joint may", news->joint, asked_dps, most_dps);
     }
@@ -474,6 +508,7 @@ static void judge_goal(const far_joint *joint, const far_news *news)
     halt_base *base = &halt.base[news->joint];
     double from_deg, to_deg;
     may_go(joint, news, base, &from_deg, &to_deg);
+    base->rested = base->rested && !news->missed; /* nobody knew it */
     if (!base->halted) {
         base->halted = true;
         base->halt_left_us = news->left_us;
@@ -485,10 +520,12 @@ static void judge_goal(const far_joint *joint, const far_news *news)
     }
     halt.judged_goals++;
     if (news->ask_dps > 0 && joint->family->count_dps == 0) { /* of a time */
-        double way_us = fabs(news->goal_deg - joint->at_deg) / news->ask_dps * HALT_S;
+        double way_us = fabs(news->goal_deg - joint->set_deg) / news->ask_dps * HALT_S;
         halt.ends_us = grobo_i_later(halt.ends_us, halt.now_us + (int64_t)way_us);
     }
-    double off_deg = outside(news->goal_deg, from_deg, to_deg);
+    double carries_deg = far_carries_deg(joint, joint->at_deg); /* the goal is so much beyond */
+    double off_deg =
+        outside(news->goal_deg, from_deg + fmin(carries_deg, 0), to_deg + fmax(carries_deg, 0));
     if (off_deg > slack_deg(joint)) {
         if (news->missed) {
             halt.excused++;
@@ -506,8 +543,20 @@ static void note_last(const far_joint *joint, const far_news *news)
     halt_base *base = &halt.base[news->joint];
     double dps = news->ask_dps > 0 ? fmin(news->ask_dps, joint->top_dps) : joint->top_dps;
     base->turned = base->begins = true;
+    base->rested = base->rested && fabs(news->goal_deg - base->held_deg) <= joint->family->step_deg;
     base->begins_deg = joint->at_deg;
     base->asked_dps = copysign(dps, news->goal_deg - joint->at_deg);
+}
+
+static void judge_limits(const far_joint *joint, const far_news *news)
+{
+    const grobo_joint *limits = grobo_i_joint(halt.of->driver.model, halt_joint_of(news->joint));
+    double sign = limits->sign, deg = sign * news->goal_deg;
+    double least_deg = DEG(limits->min_rad) - joint->family->step_deg;
+    double most_deg = DEG(limits->max_rad) + joint->family->step_deg;
+    if (deg < least_deg || deg > most_deg) {
+        halt_blame("a goal leaves the limits", news->joint, deg, deg < 0 ? least_deg : most_deg);
+    }
 }
 
 static void hear(void *ctx, const far_news *news)
@@ -519,6 +568,9 @@ static void hear(void *ctx, const far_news *news)
                (double)(halt.now_us - halt.asked_us) / HALT_MS, news->joint + 1, joint->at_deg,
                joint->dps, news->is_goal ? "goal" : "torque",
                news->is_goal ? news->goal_deg : news->torque, news->ask_dps);
+    }
+    if (news->is_goal) {
+        judge_limits(joint, news);
     }
     if (halt.judged && news->is_goal && news->left_us < halt.asked_us) {
         note_last(joint, news);
@@ -537,14 +589,16 @@ static void hear(void *ctx, const far_news *news)
     }
 }
 
-/* For how long it turns yet if nobody stops it. */
+/* For how long it turns yet if nobody stops it. One whose gears stick, behind a set point that goes
+ * on, does not: whether it turns later, the place where it rests shows. */
 static int64_t left_us(const far_joint *joint)
 {
-    double left_deg = fabs(joint->goal_deg - joint->at_deg);
-    bool ends = left_deg <= braking_deg(joint, joint->dps) + SLACK_DEG; /* where a halt would */
-    return joint->torque != 1 || joint->dps == 0 || ends
+    double left_deg = fabs(joint->goal_deg - joint->set_deg);
+    bool ends = left_deg <= braking_deg(joint, joint->set_dps) + SLACK_DEG; /* where a halt would */
+    bool sticks = joint->sag_deg != 0 && fabs(joint->dps) < HANGS_DPS;
+    return joint->torque != 1 || joint->set_dps == 0 || ends || sticks
                ? 0
-               : (int64_t)(left_deg / fabs(joint->dps) * HALT_S);
+               : (int64_t)(left_deg / fabs(joint->set_dps) * HALT_S);
 }
 
 void halt_judge(int64_t soft_us)
@@ -561,6 +615,9 @@ void halt_judge(int64_t soft_us)
         halt.base[j].asked_dps = halt.far.joint[j].dps;
         halt.base[j].turned = far_turns(&halt.far, j, halt.now_us);
         halt.base[j].missed = halt.far.joint[j].missed;
+        halt.base[j].rested = hangs(&halt.far.joint[j]);
+        halt.base[j].held_deg = halt.far.joint[j].goal_deg;
+        halt.base[j].hangs_deg = far_hangs_deg(&halt.far.joint[j], halt.far.joint[j].goal_deg);
         halt.base[j].halt_left_us = FAR_NEVER;
         if (halt.far.joint[j].waits) { /* its dead time is not over */
             const far_joint *joint = &halt.far.joint[j];
@@ -582,42 +639,79 @@ void halt_done(void)
     }
 }
 
-/* A joint that no halt reached goes on for as long as the first frame may take. */
-static void judge_rest(int j, int64_t bound_us)
+/* Where a joint may come to rest. One that no halt reached goes on for as long as the first frame
+ * may take. @return by how much it may be outside of that */
+static double may_rest(int j, int64_t bound_us, double *from_deg, double *to_deg)
 {
     const halt_base *base = &halt.base[j];
-    far_joint *joint = &halt.far.joint[j];
-    double at_deg = far_angle(&halt.far, j, halt.now_us);
-    double from_deg = base->from_deg, to_deg = base->to_deg;
-    bool lost = halt.far.lost_frames > 0 && halt.far.lost_us >= halt.asked_us;
-    if (lost) { /* until it is repeated, when every joint was read */
-        bound_us += HALT_TIME_US + halt.of->reading_us + halt.of->frame_us + LOST_REPLY_US;
-        halt.excused += !base->halted && base->turned;
+    const far_joint *joint = &halt.far.joint[j];
+    *from_deg = base->from_deg;
+    *to_deg = base->to_deg;
+    if (base->rested) {
+        *from_deg = *to_deg = base->asked_deg;
+        return halt_stays_deg(joint);
     }
     if (!base->halted) {
         double begins_deg = base->begins ? base->begins_deg : base->asked_deg;
         double on_deg = begins_deg + base->asked_dps * ((double)bound_us / HALT_S + BRAKE_S);
-        from_deg = fmin(fmin(base->asked_deg, begins_deg), on_deg);
-        to_deg = fmax(fmax(base->asked_deg, begins_deg), on_deg);
+        *from_deg = fmin(fmin(base->asked_deg, begins_deg), on_deg);
+        *to_deg = fmax(fmax(base->asked_deg, begins_deg), on_deg);
     }
-    bool far_off = outside(at_deg, from_deg, to_deg) > slack_deg(joint);
-    if (base->excused || joint->missed) { /* nobody knew where it was */
-        halt.excused += far_off;
-        return;
+    if (halt.weighs && !base->halted) {
+        *from_deg = fmin(*from_deg, base->hangs_deg);
+        *to_deg = fmax(*to_deg, base->hangs_deg);
+    } else if (halt.weighs &&
+               halt.blind) { /* what it carries, nobody has told: it sags once more */
+        *from_deg -= far_carries_deg(joint, joint->at_deg);
     }
-    if (far_off) {
-        halt_blame("comes to rest too far away", j, at_deg, base->asked_deg);
-    }
-    if (far_turns(&halt.far, j, halt.now_us) && fabs(joint->dps) > STILL_DPS) {
+    return slack_deg(joint);
+}
+
+/* Nothing goes on when the stop was told to be done. With a weight, only a job says that all
+ * stands: an exit, an emergency stop. */
+static void judge_end(int j, double at_deg)
+{
+    const halt_base *base = &halt.base[j];
+    far_joint *joint = &halt.far.joint[j];
+    double still_dps = halt.weighs ? HANGS_DPS : STILL_DPS;
+    if (far_turns(&halt.far, j, halt.now_us) && fabs(joint->dps) > still_dps) {
         halt_blame("still turns", j, joint->dps, 0);
     }
     /* The engine takes a frame to arrive at once (docs/guide/safety.md): 19 ms through a board. */
     double on_s = (double)(halt.of->frame_us + joint->family->dead_us) / HALT_S;
     double still_deg = STILL_DEG + joint->family->step_deg + fabs(base->done_dps) * on_s +
                        joint->family->count_dps * COUNT_S + halt.lag_deg;
-    if (halt.done_us > 0 && fabs(at_deg - base->done_deg) > still_deg) {
+    bool told = halt.done_us > 0 && (!halt.weighs || halt.awaited > 0);
+    if (told && fabs(at_deg - base->done_deg) > still_deg) {
         halt_blame("goes on after the stop was done", j, at_deg, base->done_deg);
     }
+}
+
+static void judge_rest(int j, int64_t bound_us)
+{
+    const halt_base *base = &halt.base[j];
+    const far_joint *joint = &halt.far.joint[j];
+    double at_deg = far_angle(&halt.far, j, halt.now_us), from_deg, to_deg;
+    if (halt.weighs && joint->torque != 1) {
+        return; /* it was let go, and falls */
+    }
+    if (halt.far.lost_frames > 0 && halt.far.lost_us >= halt.asked_us) {
+        /* until it is repeated, when every joint was read */
+        bound_us += HALT_TIME_US + halt.of->reading_us + halt.of->frame_us + LOST_REPLY_US;
+        halt.excused += !base->halted && base->turned;
+    }
+    double most_deg = may_rest(j, bound_us, &from_deg, &to_deg);
+    double off_deg = outside(at_deg, from_deg, to_deg);
+    if (base->excused || joint->missed) { /* nobody knew where it was */
+        halt.excused += off_deg > most_deg;
+        return;
+    }
+    halt.worst_deg = fmax(halt.worst_deg, off_deg);
+    if (off_deg > most_deg) {
+        halt_blame(base->rested ? "a joint at rest moves" : "comes to rest too far away", j, at_deg,
+                   base->asked_deg);
+    }
+    judge_end(j, at_deg);
 }
 
 /* Servos on one shaft come to rest at one place. */

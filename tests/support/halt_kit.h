@@ -32,8 +32,10 @@ typedef struct halt_robot {
 /* Where a joint was when a stop was asked for, and when the first halt reached it. */
 typedef struct halt_base {
     double asked_deg, asked_dps;
-    double begins_deg;       /* where it was when the last frame before the stop came */
-    double from_deg, to_deg; /* where its first halt may send it, slack left out */
+    double begins_deg;          /* where it was when the last frame before the stop came */
+    double from_deg, to_deg;    /* where its first halt may bring it to rest, slack left out */
+    bool rested;                /* it hung in its load */
+    double hangs_deg, held_deg; /* where it would hang in the goal that it had */
     bool turned, halted;
     bool begins;          /* its goal came just before: its engine takes it to turn */
     bool missed;          /* it had missed a frame when the stop was asked for */
@@ -63,13 +65,19 @@ typedef struct halt_world {
     double lag_deg;  /* a joint that missed a frame may be behind by so much */
     int64_t soft_us; /* a soft stop may take so long */
     halt_base base[FAR_JOINTS];
+    bool weighs; /* its joints carry a weight */
     int excused; /* broken rules that a lost frame explains */
     int judged_goals;
-    char fault[200]; /* the first broken rule; empty: none */
+    double worst_deg; /* by what a joint came to rest beside where it may */
+    char fault[200];  /* the first broken rule; empty: none */
 } halt_world;
 
 extern halt_world halt;
 extern bool halt_traced; /* prints what is on the wire once a stop is judged */
+/* Joints of worlds that begin from here on carry a weight (far_side.h), and hold it with torque. A
+ * halt may keep the error that carries it, a joint at rest stays where it is, and no weight is
+ * taken for a wall. */
+extern bool halt_weighs;
 
 /* Robots by their numbers; NULL behind the last. First one of each family, small and with the rate
  * of its far side; from HALT_FAMILIES on larger ones, and other rates. */
@@ -82,7 +90,8 @@ bool halt_is_paired(const halt_robot *robot);
  * rate; it must outlive its engine, and the next one made is in its place. */
 void halt_robot_make(halt_robot *robot, const char *of, int n_joints, int baud_bps);
 
-/* An engine that has just got its line, shafts limp: `moved` at deg, all others at 0. */
+/* An engine that has just got its line, shafts limp: `moved` at deg, all others at 0. With a weight
+ * they hold, and hang below. */
 void halt_begin(const halt_robot *robot, double deg);
 /* The same far side gets another program's engine. */
 void halt_new_engine(const grobo_robot_config *config);
@@ -101,6 +110,8 @@ void halt_judge(int64_t soft_us);
 void halt_done(void);
 /* Judges where joints came to rest, and how soon the first frame left: within bound_us. */
 void halt_verdict(int64_t bound_us);
+/* The most that a joint at rest may move. */
+double halt_stays_deg(const far_joint *joint);
 void halt_blame(const char *rule, int joint, double is, double may);
 
 #endif
