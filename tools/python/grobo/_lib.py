@@ -4,11 +4,12 @@
 import ctypes
 import importlib
 import os
+import sys
 from pathlib import Path
 from typing import Any
 
 ffi: Any = importlib.import_module("grobo._abi").ffi  # generate.py makes it
-NAME = "libgrobo.so.1"
+NAME = {"win32": "grobo.dll", "darwin": "libgrobo.1.dylib"}.get(sys.platform, "libgrobo.so.1")
 
 
 def _path() -> str:
@@ -20,6 +21,14 @@ def _path() -> str:
     return str(beside) if beside.exists() else NAME
 
 
+def _name_guard() -> None:
+    """The grctl of the wheel, which the library starts as a guard; what is named already stays."""
+    beside = Path(__file__).with_name("grctl.exe" if sys.platform == "win32" else "grctl")
+    if beside.exists():
+        os.environ.setdefault("GRCTL_GUARD", str(beside))
+
+
+_name_guard()
 lib: Any = ffi.dlopen(_path())
 _quick = ctypes.PyDLL(_path())
 
