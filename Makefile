@@ -679,10 +679,10 @@ $(PYTHON_DIR)/grobo/_abi.py: tools/python/generate.py src/libgrobo.map $(wildcar
 	@mkdir -p $(@D)
 	@$(PYTHON) tools/python/generate.py . "$(CC)" $@ >/dev/null
 
-wheel: ## a wheel with the library inside, for x86_64 or PROCESSOR=aarch64, in build/wheel
+wheel: ## a wheel with library and grctl, for x86_64 or PROCESSOR=aarch64, macos, win64, in build/wheel
 	@tools/python/wheel.sh "$(BUILD)" $(PROCESSOR)
 
-check-wheel: ## both wheels; this machine's is installed and plays a motion
+check-wheel: ## the wheels; this machine's is installed and plays a motion
 	-@tools/setup.sh --cross musl
 	@BUILD="$(BUILD)" TEST_TIMEOUT_S=3600 TEST_LOGS="$(BUILD)/logs/wheel" tests/run.sh tests/package/wheel.sh
 

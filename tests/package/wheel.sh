@@ -1,8 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # The wheels: made for manylinux2014, the same twice, installed in an environment of their own, and
-# a motion is played. Takes minutes and a network: `make check-wheel`.
-# environment: BUILD; PROCESSORS="x86_64 aarch64", of which this machine's is run
+# a motion is played, by the package and by the grctl inside. Those of macOS and Windows are made and
+# looked into. Takes minutes and a network: `make check-wheel`.
+# environment: BUILD; PROCESSORS="x86_64 aarch64 macos win64", of which this machine's is run
 set -u
 
 . tests/support/tap.sh
@@ -70,6 +71,28 @@ P
     [ "$(env -u PYTHONPATH "$work/venv/bin/python" "$work/opens.py")" = True ]
 }
 
+# The command, and as what the library starts for a guard.
+commands() {
+    [ "$("$work/venv/bin/grctl" version)" = "grctl $version" ] &&
+        [ "$("$work/venv/bin/python" -m grobo version)" = "grctl $version" ] &&
+        "$work/venv/bin/grctl" -d sim play motions/greet.m &&
+        echo 'import grobo, os; print(os.environ["GRCTL_GUARD"])' >"$work/guard.py" &&
+        [ "$(env -u PYTHONPATH -u GRCTL_GUARD "$work/venv/bin/python" "$work/guard.py")" = \
+            "$(echo "$work"/venv/lib/python3*/site-packages/grobo/grctl)" ]
+}
+
+# of_system PROCESSOR LIBRARY COMMAND: what the wheel holds is of that system.
+of_system() {
+    rm -rf "$work/open"
+    python3 -m zipfile -e "$(tail -n 1 "$work/name-$1")" "$work/open" &&
+        file "$work/open/grobo/$2" "$work/open/grobo/$3" >"$work/kind" || return 1
+    cat "$work/kind"
+    case $1 in
+    macos) [ "$(grep -c 'Mach-O 64-bit arm64' "$work/kind")" -eq 2 ] ;;
+    win64) [ "$(grep -c 'PE32+ .*x86-64' "$work/kind")" -eq 2 ] ;;
+    esac
+}
+
 # LeRobot finds it by the name of its distribution, and imports that.
 plugin() {
     cp -R tools/python/lerobot_robot_grobo "$work/plugin" &&
@@ -86,15 +109,26 @@ P
 }
 
 version=$(sed -n 's/.*GROBO_VERSION_STRING "\(.*\)"/\1/p' include/grobo/version.h)
-for processor in ${PROCESSORS:-x86_64 aarch64}; do
+for processor in ${PROCESSORS:-x86_64 aarch64 macos win64}; do
     test_case "a wheel for $processor"
     check "$processor: made" made "$processor"
+    case $processor in
+    macos)
+        check "$processor: of that system" of_system macos libgrobo.1.dylib grctl
+        continue
+        ;;
+    win64)
+        check "$processor: of that system" of_system win64 grobo.dll grctl.exe
+        continue
+        ;;
+    esac
     check "$processor: shows the names of the map alone" hides_the_rest "$processor"
     if [ "$processor" = "$(uname -m)" ]; then
         check "$processor: the same again" same_again "$processor"
         check "$processor: installed" installs "$processor"
         check "$processor: plays a motion" plays
         check "$processor: opens a serial line" opens
+        check "$processor: its grctl" commands
         check "$processor: the plugin for LeRobot is found" plugin
     else
         check "$processor: of that machine" machine "$processor" \
