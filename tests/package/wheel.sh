@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# The wheels: made for manylinux2014, the same twice, installed in an environment of their own, and a
-# motion is played, by the package and by the grctl inside. Those of macOS and Windows are made and
-# looked into. Takes minutes and a network: `make check-wheel`.
+# The wheels: made for manylinux2014, the same twice, installed in an environment of their own, and
+# a motion is played, by the package and by the grctl inside; those of macOS and Windows are looked
+# into. Takes minutes and a network: `make check-wheel`.
 # environment: BUILD; PROCESSORS="x86_64 aarch64 macos win64", of which this machine's is run
 set -u
 
