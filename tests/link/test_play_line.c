@@ -15,7 +15,7 @@
 #include "tests/support/spy.h"
 #include "tests/support/test.h"
 
-enum { LIMIT_S = 60, MOTORS = 20, KEYS_MAX = 64 };
+enum { LIMIT_S = 60, MOTORS = 20, KEYS_MAX = 64, TRIES = 3 };
 enum {
     SLACK_US = 60000, /* in what a frame says, and in how slowly a robot is approached */
     SEEN_US = 300000  /* in when it is seen, by a process that waits its turn too */
@@ -30,10 +30,18 @@ static const int init_ddeg[MOTORS] = {0, 0,    200,  0, -200, -200, 0, 200, 0,  
 static spy s;
 static grobo_sim_config sim = {GROBO_SIM_CONFIG_INIT};
 
+/* What the hook of a simulator has seen. */
+static struct {
+    int goal_ddeg[MOTORS]; /* by servo */
+    bool goal_set[MOTORS];
+    int torque_on;
+} seen;
+
 static int set_up(void)
 {
     sim = (grobo_sim_config){GROBO_SIM_CONFIG_INIT};
     memset(&s, 0, sizeof s);
+    memset(&seen, 0, sizeof seen);
     return 0;
 }
 
@@ -45,6 +53,11 @@ static int tear_down(void)
 
 static const test_fixture fixture[] = {{NULL, set_up, tear_down}};
 
+/*
+ * A machine that stands still for longer than a quarter of a second ends a motion by right, and
+ * shows nothing else: it is played again, to a robot that has just started. Where the test stops
+ * the command itself, that is what it wants to see.
+ */
 static int play(const char *a, const char *b, const char *c)
 {
     const char *arguments[] = {"-q", "--json", "--timeout=300", "play", "--unwatched", a, b,
@@ -53,10 +66,19 @@ static int play(const char *a, const char *b, const char *c)
         print_message("no GRCTL to run\n");
         skip();
     }
-    if (!s.server) {
-        assert_true(spy_open(&s, &sim));
+    for (int tries = 1;; tries++) {
+        if (!s.server) {
+            assert_true(spy_open(&s, &sim));
+        }
+        int status = spy_run(&s, arguments, LIMIT_S);
+        if (status != 4 || s.on_pose || !strstr(s.out, "host stalled") || tries == TRIES) {
+            return status;
+        }
+        print_message("the machine stood still: once more\n");
+        spy_close(&s);
+        memset(&s, 0, sizeof s);
+        memset(&seen, 0, sizeof seen);
     }
-    return spy_run(&s, arguments, LIMIT_S);
 }
 
 /* A number of the line that ends the output; -1 where it is missing. */
@@ -233,29 +255,24 @@ TEST_WITH(fixture, test_long_stall)
 
 /* ---- safety ------------------------------------------------------------------------------- */
 
-static int goal_ddeg[MOTORS]; /* by servo */
-static bool goal_set[MOTORS];
-static int32_t start_mdeg[MOTORS];
-static int torque_on;
+static int32_t start_mdeg[MOTORS]; /* by servo */
 
 static void on_sim(void *ctx, const grobo_sim_event *event)
 {
     (void)ctx;
     if (event->kind == GROBO_SIM_GOAL) {
-        goal_ddeg[event->servo] = event->value;
-        goal_set[event->servo] = true;
+        seen.goal_ddeg[event->servo] = event->value;
+        seen.goal_set[event->servo] = true;
     } else if (event->kind == GROBO_SIM_TORQUE && event->value == GROBO_TORQUE_ON) {
-        torque_on++;
-        assert_true(goal_set[event->servo]);
-        assert_true(abs(100 * goal_ddeg[event->servo] - start_mdeg[event->servo]) <= 100);
+        seen.torque_on++;
+        assert_true(seen.goal_set[event->servo]);
+        assert_true(abs(100 * seen.goal_ddeg[event->servo] - start_mdeg[event->servo]) <= 100);
     }
 }
 
 /* Joints anywhere: they hold where they are, then go to the first posture slowly. */
 TEST_WITH(fixture, test_limp_robot)
 {
-    memset(goal_set, 0, sizeof goal_set);
-    torque_on = 0;
     sim = (grobo_sim_config){GROBO_SIM_CONFIG_INIT, .start = GROBO_SIM_START_LIMP, .seed = 7,
                              .hook = on_sim};
     assert_true(spy_open(&s, &sim));
@@ -265,7 +282,7 @@ TEST_WITH(fixture, test_limp_robot)
         start_mdeg[servo] = view.angle_mdeg;
     }
     assert_int_equal(play("--key", greet, NULL), 0);
-    assert_int_equal(torque_on, MOTORS);
+    assert_int_equal(seen.torque_on, MOTORS);
     assert_true(s.n_poses > 3);
     for (int motor = 1; motor <= MOTORS; motor++) {
         const int servo = grobo_sim_find(grobo_sim_server_sim(s.server), motor);
