@@ -9,12 +9,7 @@
 # compare with the header.
 . tests/support/tap.sh
 work=$(mktemp -d) || exit 1
-sim=
-end() {
-    [ -z "$sim" ] || { kill "$sim" && wait "$sim"; } 2>/dev/null
-    rm -rf "$work"
-}
-trap end EXIT
+trap 'rm -rf "$work"' EXIT
 build=${BUILD:-build}
 programs="$build/tests/link/test_classic_data $build/tests/link/test_classic_frames"
 original=${GROBO_ORIGINAL:-}
@@ -165,8 +160,10 @@ measures() {
         [ ! -e "$work/robot" ] || break
         sleep 0.5
     done
-    "$work/program" "$work/robot" "$work/folder" 2>/dev/null >&2 &&
-        cp "$work/folder/measured" "${MEASURED:-$work/kept}"
+    "$work/program" "$work/robot" "$work/folder" 2>/dev/null >&2
+    ended=$?
+    { kill "$sim" && wait "$sim"; } 2>/dev/null # a child of this step, which is a process
+    [ $ended -eq 0 ] && cp "$work/folder/measured" "${MEASURED:-$work/kept}"
 }
 
 as_kept() {
