@@ -343,38 +343,38 @@ FAMILY_CLIENTS := dynamixel-sdk==4.1.0 rustypot==1.13.1 feetech-servo-sdk==1.0.0
     deepdiff draccus tqdm numpy huggingface-hub cffi
 # Its motors and robots alone: the rest of it wants torch.
 FAMILY_LEROBOT := lerobot==0.4.4
+# A Python with MuJoCo, where it can be had; $(call with_mujoco,COMMANDS) runs them there, behind the
+# package, or says that it is skipped.
+GET_MUJOCO = python3 -m venv $(BUILD)/physics && $(BUILD)/physics/bin/pip install -q \
+    --disable-pip-version-check mujoco numpy cffi || true
+with_mujoco = if $(BUILD)/physics/bin/python -c 'import mujoco, numpy, cffi' 2>/dev/null; then \
+    $(MAKE) --no-print-directory python PYTHON="$(call whole,$(BUILD)/physics/bin/python)" && $(1); \
+    else echo '$@: skipped: MuJoCo cannot be had for this python3'; fi
+
 check-physics: all $(PLANT_PIPE) $(WEIGHT_TABLE) ## simulated servos in front of bodies of MuJoCo (from PyPI)
-	@python3 -m venv $(BUILD)/physics && $(BUILD)/physics/bin/pip install -q \
-	    --disable-pip-version-check mujoco numpy cffi || true
-	@if $(BUILD)/physics/bin/python -c 'import mujoco, numpy, cffi' 2>/dev/null; then \
-	    $(MAKE) --no-print-directory python PYTHON="$(call whole,$(BUILD)/physics/bin/python)" && \
+	@$(GET_MUJOCO)
+	@+$(call with_mujoco, \
 	    $(BUILD)/physics/bin/python tests/physics/mujoco_plant.py $(PLANT_PIPE) && \
 	    $(BUILD)/physics/bin/python tests/physics/mujoco_plant.py $(PLANT_PIPE) $(WEIGHT_TABLE) && \
 	    $(BUILD)/physics/bin/python tests/physics/exported.py "$(call whole,$(GRCTL_RUN))" \
 	        $(PLANT_PIPE) gr001 so101 ./tests/physics/hexapod.yaml && \
 	    GRCTL="$(call whole,$(GRCTL_RUN))" PYTHONPATH="$(abspath $(PYTHON_DIR))" \
-	    $(BUILD)/physics/bin/python tests/package/python/test_physics.py; \
-	else echo 'check-physics: skipped: MuJoCo cannot be had for this python3'; fi
+	    $(BUILD)/physics/bin/python tests/package/python/test_physics.py)
 
 balance-table: all ## the table of docs/guide/whole-body.md: COUNT=300 variants, SEED=1; in build/balance.md
-	@python3 -m venv $(BUILD)/physics && $(BUILD)/physics/bin/pip install -q \
-	    --disable-pip-version-check mujoco numpy cffi || true
-	@if $(BUILD)/physics/bin/python -c 'import mujoco, numpy, cffi' 2>/dev/null; then \
-	    $(MAKE) --no-print-directory python PYTHON="$(call whole,$(BUILD)/physics/bin/python)" && \
+	@$(GET_MUJOCO)
+	@+$(call with_mujoco, \
 	    PYTHONPATH="$(abspath $(PYTHON_DIR))" $(BUILD)/physics/bin/python tests/physics/balance.py \
 	        "$(call whole,$(GRCTL_RUN))" motions/*.pseq --count $(or $(COUNT),300) --seed $(or $(SEED),1) \
-	        --table $(BUILD)/balance.md; \
-	else echo 'balance-table: skipped: MuJoCo cannot be had for this python3'; fi
+	        --table $(BUILD)/balance.md)
 
 # For programs that drive bodies: two Pythons, one with MuJoCo, one with the clients.
 check-bodies: all $(BUILD)/docs/examples/balance$(EXE) ## programs of others drive bodies of MuJoCo, and what these cost (from PyPI)
-	@python3 -m venv $(BUILD)/physics && $(BUILD)/physics/bin/pip install -q \
-	    --disable-pip-version-check mujoco numpy cffi || true
+	@$(GET_MUJOCO)
 	@python3 -m venv $(BUILD)/families && $(BUILD)/families/bin/pip install -q \
 	    --disable-pip-version-check $(FAMILY_CLIENTS) pylx16a==1.1.1 dicot==0.1.0 || true
 	@$(BUILD)/families/bin/pip install -q --disable-pip-version-check --no-deps $(FAMILY_LEROBOT) || true
-	@if $(BUILD)/physics/bin/python -c 'import mujoco, numpy, cffi' 2>/dev/null; then \
-	    $(MAKE) --no-print-directory python PYTHON="$(call whole,$(BUILD)/physics/bin/python)" && \
+	@+$(call with_mujoco, \
 	    export PYTHONPATH="$(abspath $(PYTHON_DIR))" && \
 	    $(BUILD)/physics/bin/python tests/physics/clients.py "$(call whole,$(GRCTL_RUN))" \
 	        $(BUILD)/families/bin/python && \
@@ -383,28 +383,21 @@ check-bodies: all $(BUILD)/docs/examples/balance$(EXE) ## programs of others dri
 	    $(BUILD)/physics/bin/python tests/physics/teleoperation.py "$(call whole,$(GRCTL_RUN))" \
 	        $(BUILD)/families/bin/python && \
 	    $(BUILD)/physics/bin/python tests/physics/cube.py "$(call whole,$(GRCTL_RUN))" && \
-	    $(BUILD)/physics/bin/python tests/physics/cost.py "$(call whole,$(GRCTL_RUN))"; \
-	else echo 'check-bodies: skipped: MuJoCo cannot be had for this python3'; fi
+	    $(BUILD)/physics/bin/python tests/physics/cost.py "$(call whole,$(GRCTL_RUN))")
 
 bodies-soak: all ## GR001 on a body that is pushed and falls, in virtual time: MINUTES=60, SEED=1
-	@python3 -m venv $(BUILD)/physics && $(BUILD)/physics/bin/pip install -q \
-	    --disable-pip-version-check mujoco numpy cffi || true
-	@if $(BUILD)/physics/bin/python -c 'import mujoco, numpy, cffi' 2>/dev/null; then \
-	    $(MAKE) --no-print-directory python PYTHON="$(call whole,$(BUILD)/physics/bin/python)" && \
+	@$(GET_MUJOCO)
+	@+$(call with_mujoco, \
 	    PYTHONPATH="$(abspath $(PYTHON_DIR))" $(BUILD)/physics/bin/python tests/physics/soak.py \
 	        "$(call whole,$(GRCTL_RUN))" motions/*.pseq --minutes $(or $(MINUTES),60) \
-	        --seed $(or $(SEED),1); \
-	else echo 'bodies-soak: skipped: MuJoCo cannot be had for this python3'; fi
+	        --seed $(or $(SEED),1))
 
 bodies-pictures: all ## the strips of docs/guide/body.md, in build/pictures; MUJOCO_GL=egl without a display
-	@python3 -m venv $(BUILD)/physics && $(BUILD)/physics/bin/pip install -q \
-	    --disable-pip-version-check mujoco numpy cffi || true
-	@if $(BUILD)/physics/bin/python -c 'import mujoco, numpy, cffi' 2>/dev/null; then \
-	    $(MAKE) --no-print-directory python PYTHON="$(call whole,$(BUILD)/physics/bin/python)" && \
+	@$(GET_MUJOCO)
+	@+$(call with_mujoco, \
 	    mkdir -p $(BUILD)/pictures && PYTHONPATH="$(abspath $(PYTHON_DIR))" \
 	    $(BUILD)/physics/bin/python tests/physics/pictures.py "$(call whole,$(GRCTL_RUN))" \
-	        $(BUILD)/pictures; \
-	else echo 'bodies-pictures: skipped: MuJoCo cannot be had for this python3'; fi
+	        $(BUILD)/pictures)
 
 check-families: all ## clients of other servos (from PyPI) against the simulator
 	@python3 -m venv $(BUILD)/families && $(BUILD)/families/bin/pip install -q --disable-pip-version-check $(FAMILY_CLIENTS)
